@@ -1,0 +1,272 @@
+// The contract between the compiler and the runtime: what a compiled module holds. The compiler fills a Module once; the
+// runtime executes it and never changes it. verify() proves that a module is safe to execute, so that a damaged or hostile
+// object file is an error and never a crash. Sources: the variable classes, calls and statements are those of Power PMAC
+// script (User's Manual p501-676); the encoding is our own.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pmac::bytecode {
+
+// --- vocabulary, made from the tables -------------------------------------------------------------------------------
+
+enum class Opcode : std::uint16_t {
+#define OPCODE(Name, text, format, meaning) k##Name,
+#include "compiler/bytecode/opcode.def"
+#undef OPCODE
+  kCount
+};
+
+enum class Function : std::uint16_t {
+#define FUNCTION(Name, name, argument_count, meaning) k##Name,
+#include "compiler/bytecode/function.def"
+#undef FUNCTION
+  kCount
+};
+
+enum class ElementId : std::uint16_t {
+#define ELEMENT(Id, name, count0, count1, count2, Type, default_value, unit, Access, Simulation, meaning) k##Id,
+#include "compiler/bytecode/element.def"
+#undef ELEMENT
+  kCount
+};
+
+/// How the operands of an instruction are read; see the rows of opcode.def.
+enum class OperandFormat : std::uint8_t {
+  kNone, kReg, kReg3, kRegReg, kRegRegReg, kRegConst, kRegInt,
+  kRegP, kRegQ, kRegM, kRegI, kRegC, kRegD, kRegRegClass, kRegElement,
+  kFunc, kJump, kRegJump, kLoop, kRegLoop, kTarget, kCallTarget, kRegSync,
+  kMoveMode, kAxisMask, kRegMotion, kRegWord, kControl, kString, kPortString, kRegString,
+  kAxisDef, kPointerDef, kProgram,
+};
+
+enum class VariableClass : std::uint8_t { kP, kQ, kM, kI, kL, kR, kC, kD, kElement };
+
+inline constexpr int kPCount = 65536;
+inline constexpr int kQCount = 8192;
+inline constexpr int kMCount = 16384;
+inline constexpr int kICount = 16384;
+inline constexpr int kLCount = 8192;
+inline constexpr int kCCount = 64;
+inline constexpr int kDCount = 128;
+inline constexpr int kAxisCount = 32;
+inline constexpr int kMaxMotors = 33;
+inline constexpr int kMaxCoords = 17;
+inline constexpr int kMaxPlcs = 32;
+inline constexpr int kMaxArguments = 16;       // of one call
+inline constexpr int kMaxElementIndices = 3;
+inline constexpr int kMaxFrameSize = 16384;    // registers of one frame
+inline constexpr int kMaxOutgoing = 8192;      // R variables of one frame
+inline constexpr int kFirstKinematicLocal = 320;
+
+/// Names of the 32 axes by axis index: A B C U V W X Y Z AA BB ... ZZ.
+std::string_view axis_name(int axis_index);
+/// Axis index of a name in either case, or -1.
+int axis_index_from_name(std::string_view name);
+
+enum class MoveMode : std::uint8_t { kLinear, kRapid, kCircle1, kCircle2, kCircle3, kCircle4, kPvt, kSpline, kCount };
+std::string_view move_mode_name(MoveMode mode);
+
+/// Parameters of SetMotion. kFeed is F, kPvtTime the number of pvt, kTsel the number of tsel and so on.
+enum class MotionParameter : std::uint8_t { kTa, kTd, kTs, kTsd, kTm, kFeed, kPvtTime, kSplineTime0, kSplineTime1, kSplineTime2,
+                                            kTsel, kCcRadius, kCcMode, kCount };
+std::string_view motion_parameter_name(MotionParameter parameter);
+
+/// Kinds of words in a move block. kTarget, kVelocity (pvt) and kTriggerDistance carry an axis index; kCenter carries
+/// 0-2 for I J K and 3-5 for II JJ KK; kRadius carries 0.
+enum class WordKind : std::uint8_t { kTarget, kVelocity, kTriggerDistance, kCenter, kRadius, kCount };
+
+/// Verbs of Control. Unless said otherwise argument 0 is the number of the coordinate system, program or motor; nan
+/// means "the one addressed by this thread" (executing coordinate system, Ldata.Coord, Ldata.Motor, or & and #).
+enum class ControlVerb : std::uint16_t {
+  // coordinate systems
+  kAbort, kBegin /* coord, program[.label] */, kRun, kStep, kStart /* coord, program */, kPause, kHold, kResume,
+  kQuickStop, kRetrace, kForward, kEnable, kDisable, kDelayedDisable, kAbortDisable, kTimeBase /* coord, percent */,
+  kPmatch, kPset /* axis index, value */, kPclr, kPstore, kPload,
+  kDefineLookahead /* coord, segments */, kDeleteLookahead,
+  // motors; a position or distance argument of nan means Motor[].ProgJogPos
+  kJogPlus, kJogMinus, kJogStop, kJogTo /* motor, position mu */, kJogBy /* motor, distance mu from commanded */,
+  kJogByActual /* motor, distance mu from actual */, kJogToAndKeep /* motor, position */, kJogReturn,
+  kHome, kHomeZero, kKill, kDelayedKill, kPhase, kOpenLoop /* motor, percent */,
+  // PLC programs (argument 0: number)
+  kEnablePlc, kDisablePlc, kPausePlc, kResumePlc, kStepPlc,
+  // reports of the on-line stream (motor or coord)
+  kReportPosition, kReportVelocity, kReportDesired, kReportFollowingError, kReportStatus,
+  kReportCoordPosition, kReportCoordStatus, kReportTimeBase,
+  kReset, kSave,
+  kCount
+};
+std::string_view control_verb_name(ControlVerb verb);
+/// Exact number of arguments of a verb, including the number of the thing it acts on.
+int control_argument_count(ControlVerb verb);
+
+enum class AssignOp : std::uint8_t { kSet, kAdd, kSub, kMul, kDiv, kMod, kAnd, kOr, kXor, kShiftLeft, kShiftRight, kCount };
+/// current (op)= value, with the operators' own semantics (integers for the bitwise ones).
+double apply_assignment(AssignOp op, double current, double value);
+/// r[b] op r[c] of the arithmetic, bitwise and comparison instructions (kAdd .. kNear).
+double apply_binary(Opcode op, double left, double right);
+
+// --- rows of the tables ----------------------------------------------------------------------------------------------
+
+struct OpcodeInfo { std::string_view text; OperandFormat format; std::string_view meaning; };
+const OpcodeInfo& opcode_info(Opcode opcode);
+
+struct FunctionInfo { std::string_view name; int argument_count; std::string_view meaning; };
+const FunctionInfo& function_info(Function function);
+
+enum class ElementType : std::uint8_t { kDouble, kInteger, kMask, kBit };
+enum class ElementAccess : std::uint8_t { kSaved, kWork, kStatus };
+enum class ElementSimulation : std::uint8_t { kActs, kStored };
+struct ElementInfo {
+  std::string_view name;                 // "Motor[].JogSpeed"
+  int index_counts[kMaxElementIndices];  // 0: no such index
+  ElementType type;
+  double default_value;
+  std::string_view unit;
+  ElementAccess access;
+  ElementSimulation simulation;
+  std::string_view meaning;
+  int index_count() const;               // how many indices the name has
+};
+const ElementInfo& element_info(ElementId id);
+/// The element of a name such as "motor[].jogspeed" (indices removed, any case), or kCount.
+ElementId find_element(std::string_view pattern);
+
+// --- what a module holds -----------------------------------------------------------------------------------------------
+
+struct Instruction {
+  Opcode op;
+  std::uint16_t a;
+  std::int32_t imm;  // or b (low half) and c (high half)
+  std::uint16_t b() const { return static_cast<std::uint16_t>(static_cast<std::uint32_t>(imm) & 0xffffu); }
+  std::uint16_t c() const { return static_cast<std::uint16_t>(static_cast<std::uint32_t>(imm) >> 16); }
+  static Instruction with_bc(Opcode op, unsigned a, unsigned b, unsigned c = 0) {
+    return {op, static_cast<std::uint16_t>(a), static_cast<std::int32_t>((c << 16) | (b & 0xffffu))};
+  }
+  static Instruction with_imm(Opcode op, unsigned a, std::int32_t imm) { return {op, static_cast<std::uint16_t>(a), imm}; }
+  bool operator==(const Instruction&) const = default;
+};
+static_assert(sizeof(Instruction) == 8);
+
+/// Place in a source file. file indexes Module::files, -1: none. line and column count from 1, 0: none.
+struct SourceLine { std::int32_t file = -1; std::int32_t line = 0; std::int32_t column = 0; bool operator==(const SourceLine&) const = default; };
+
+/// From this instruction on (until the next entry) the source is this line.
+struct LineEntry { std::uint32_t pc; SourceLine source; bool operator==(const LineEntry&) const = default; };
+
+struct LabelEntry { std::uint32_t number; std::uint32_t pc; bool operator==(const LabelEntry&) const = default; };
+
+/// kOnline is a load script: what the load stream does outside buffers, executed when the module is loaded.
+enum class ProgramKind : std::uint8_t { kProg, kPlc, kSubprog, kForward, kInverse, kRotary, kOnline, kCount };
+std::string_view program_kind_name(ProgramKind kind);
+
+struct Program {
+  ProgramKind kind = ProgramKind::kProg;
+  std::uint32_t number = 0;            // prog, PLC or subprogram number; coordinate system of forward and inverse
+  std::string name;                    // declared name, or empty
+  std::uint32_t local_count = 0;       // L variables of the frame; registers [0, local_count)
+  std::uint32_t frame_size = 0;        // >= local_count; the registers of the frame
+  std::uint32_t outgoing_count = 0;    // R variables that it writes or reads: registers [frame_size, frame_size + outgoing_count)
+  std::vector<Instruction> code;       // never falls off the end: last is Return, Stop, Jump, Loop or GotoLabel
+  std::vector<LineEntry> lines;        // ascending pc
+  std::vector<LabelEntry> labels;      // ascending number; N labels and SUB: routines
+  SourceLine source;                   // of its open
+  bool operator==(const Program&) const = default;
+};
+
+/// An element with its indices: constants, or the value of register `reg` of the frame where is_register.
+struct ElementRef {
+  struct Index { bool is_register = false; std::uint32_t value = 0; bool operator==(const Index&) const = default; };
+  ElementId id{};
+  Index index[kMaxElementIndices]{};
+  bool address = false;                // "Element.a": its address, for Gather.Addr[]; encoded as a number by the runtime
+  bool operator==(const ElementRef&) const = default;
+};
+
+/// What a synchronous assignment stores to. number_register: 0xffff, or the register whose truncated value is the number
+/// (read when the line is calculated). For kElement, element indexes Module::element_refs.
+struct SyncTarget {
+  VariableClass variable_class = VariableClass::kP;
+  std::int32_t number = 0;
+  std::uint16_t number_register = 0xffff;
+  std::uint32_t element = 0;
+  AssignOp op = AssignOp::kSet;
+  bool operator==(const SyncTarget&) const = default;
+};
+
+/// Constant call target: subprogram number, label number or -1 for its top.
+struct CallTarget { std::uint32_t subprogram = 0; std::int64_t label = -1; bool operator==(const CallTarget&) const = default; };
+
+/// #motor->...: one entry of the axis definition table.
+struct AxisTerm { std::uint8_t axis = 0; double coefficient_mu_per_uu = 0; bool operator==(const AxisTerm&) const = default; };
+enum class AxisDefinitionKind : std::uint8_t { kLinear, kNull, kInverseKinematics, kSpindle, kCount };
+struct AxisDefinition {
+  std::int32_t motor = -1;             // -1: the addressed motor
+  AxisDefinitionKind kind = AxisDefinitionKind::kLinear;
+  std::uint8_t spindle = 0;            // of kSpindle: 0 S, 1 S0, 2 S1
+  std::vector<AxisTerm> terms;         // of kLinear
+  double offset_mu = 0;
+  bool operator==(const AxisDefinition&) const = default;
+};
+
+/// M variable definitions of section "pointer variables".
+enum class PointerKind : std::uint8_t { kSelf, kIo, kUserInteger, kUserFloat, kUserDouble, kElement, kCount };
+struct PointerDefinition {
+  std::int32_t first_m = 0, last_m = 0;  // a range is allowed for kSelf
+  PointerKind kind = PointerKind::kSelf;
+  bool is_signed = false;
+  std::uint32_t address = 0;             // I/O address or byte offset into user memory
+  std::uint8_t start_bit = 0, width = 32;// of kIo, kUserInteger; of kElement where has_field
+  bool has_field = false;
+  std::uint32_t element = 0;             // of kElement: index into element_refs, constant indices only
+  std::string name;                      // declared name, or empty
+  bool operator==(const PointerDefinition&) const = default;
+};
+
+/// A declared name, for on-line commands that use names, for logs and for --emit=symbols.
+enum class SymbolKind : std::uint8_t { kGlobal, kCsGlobal, kPointer, kProg, kPlc, kSubprog, kMacro, kCount };
+struct Symbol {
+  SymbolKind kind = SymbolKind::kGlobal;
+  std::string name;
+  std::uint32_t number = 0;              // P, Q, M or buffer number
+  std::uint32_t size = 0;                // elements of an array, 0: scalar
+  std::string text;                      // of kMacro
+  bool operator==(const Symbol&) const = default;
+};
+
+struct Module {
+  std::vector<std::string> files;
+  std::vector<double> constants;
+  std::vector<std::string> strings;
+  std::vector<ElementRef> element_refs;
+  std::vector<SyncTarget> sync_targets;
+  std::vector<CallTarget> call_targets;
+  std::vector<AxisDefinition> axis_definitions;
+  std::vector<PointerDefinition> pointer_definitions;
+  std::vector<Symbol> symbols;
+  std::vector<Program> programs;                  // buffers in order of their open, and load scripts
+  std::vector<std::uint32_t> load_order;          // indices of kOnline programs, in order
+  bool operator==(const Module&) const = default;
+};
+
+// --- what can be done with a module --------------------------------------------------------------------------------------
+
+/// First reason why the module is not safe to execute, or empty. Checks every operand of every instruction: registers below
+/// frame_size (outgoing ones below frame_size + outgoing_count where the row allows them), variable numbers, table indices,
+/// forward and backward targets, argument counts, labels ascending and in range, no fall-through past the end, kOnline-only
+/// instructions in kOnline programs only, sizes within the k... limits above.
+std::string verify(const Module& module);
+
+/// Stable text form: tables, then programs with pc, instruction text and operands, source line at the right. (--emit=bytecode)
+std::string disassemble(const Module& module);
+
+/// Source of an instruction; SourceLine{} if the table has none.
+SourceLine source_of(const Program& program, std::uint32_t pc);
+
+/// "file:line" of a source line, or "<no source>".
+std::string to_string(const Module& module, SourceLine source);
+
+}  // namespace pmac::bytecode

@@ -1,0 +1,38 @@
+// A motion or a program that cannot go on: a value that says why and where. It ends as controller status, stops its
+// coordinate system and is named on standard error with its source line.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "compiler/bytecode/bytecode.h"
+
+namespace pmac::runtime {
+
+/// What went wrong. The numbers of Coord[].ErrorStatus that belong to them are in error_status().
+enum class FaultKind {
+  kRunTime,                 // value out of range, missing subprogram, stack overflow, ...
+  kSyncBuffer,              // more synchronous assignments than Coord[].SyncOps
+  kMoveType,                // a move that cannot follow the one before
+  kBadTarget,               // target, feed rate or time that is not finite or not allowed
+  kCircleRadius,            // end point not on the circle, or no circle through the points
+  kInverseKinematics,       // no solution, or the routine aborted
+  kForwardKinematics,
+  kNotReady,                // start refused: no motors, not solvable, program missing, ...
+  kSoftLimit,
+  kUserStatus,              // Coord[].ErrorStatus written by the program
+  kNotSimulated,            // a statement that the simulation does not execute
+};
+
+struct [[nodiscard]] Fault {
+  FaultKind kind{};
+  bytecode::SourceLine source;
+  std::string detail;       // a sentence without full stop: what, and the remedy where there is one
+};
+
+template <class T> using Result = std::variant<T, Fault>;
+
+/// Value of Coord[].ErrorStatus for a fault.
+int error_status(FaultKind kind);
+
+}  // namespace pmac::runtime

@@ -1,0 +1,135 @@
+// Executes verified bytecode. One Thread is one running program: a motion program, a PLC, a kinematic routine or an on-line
+// command line. run() executes a bounded number of instructions and says why it stopped; everything outside the thread's own
+// registers and the P, Q and D arrays goes through Host, so that the interpreter knows nothing of motion or cards.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "compiler/bytecode/bytecode.h"
+#include "runtime/fault.h"
+
+namespace pmac::runtime {
+
+/// A program of a loaded module; keeps the module alive.
+struct ProgramHandle {
+  std::shared_ptr<const bytecode::Module> module;
+  const bytecode::Program* program = nullptr;
+  explicit operator bool() const { return program != nullptr; }
+};
+
+/// An element with its indices evaluated.
+struct ElementAddress {
+  bytecode::ElementId id{};
+  std::array<std::uint32_t, bytecode::kMaxElementIndices> index{};
+  bool operator==(const ElementAddress&) const = default;
+};
+
+class Thread;
+
+/// What a motion or control instruction tells the interpreter to do next.
+enum class Flow {
+  kContinue,   // go on with the next instruction
+  kSuspend,    // stop here; the next run() continues with the next instruction
+  kStop,       // end the program (abort)
+  kFault,      // host_fault() of the thread says why
+};
+
+/// Everything that a program reaches outside its own registers.
+class Host {
+ public:
+  virtual ~Host() = default;
+  virtual double read_m(Thread&, int number) = 0;
+  virtual void write_m(Thread&, int number, double value) = 0;
+  virtual double read_i(Thread&, int number) = 0;
+  virtual void write_i(Thread&, int number, double value) = 0;
+  /// Indices are in range when called. Faults are set with Thread::set_host_fault and answered as 0.
+  virtual double read_element(Thread&, const ElementAddress&) = 0;
+  virtual Flow write_element(Thread&, const ElementAddress&, double value) = 0;
+  /// Number that stands for the address of an element (Element.a).
+  virtual double element_address(Thread&, const ElementAddress&) = 0;
+  /// SetMode .. Delay. registers: the frame, so that r[a] is registers[a].
+  virtual Flow motion(Thread&, const bytecode::Instruction&, std::span<const double> registers) = 0;
+  virtual Flow control(Thread&, bytecode::ControlVerb, std::span<const double> arguments) = 0;
+  /// A synchronous assignment with its number or element resolved and its right side evaluated.
+  virtual Flow queue_assignment(Thread&, const bytecode::SyncTarget& resolved, const ElementAddress& element, double value) = 0;
+  virtual ProgramHandle find_subprogram(std::uint32_t number) = 0;
+  virtual Flow command(Thread&, std::string_view text) = 0;
+  virtual Flow send(Thread&, int port, std::string_view text) = 0;
+  virtual double random(double range) = 0;
+  virtual void seed_random(double seed) = 0;
+  /// AddressCoord .. Report of load scripts. registers as for motion().
+  virtual Flow online(Thread&, const bytecode::Module&, const bytecode::Instruction&, std::span<const double> registers) = 0;
+};
+
+enum class RunStop {
+  kBudget,      // the instruction budget is used up; call again
+  kSuspended,   // Flow::kSuspend
+  kJumpBack,    // the jump-back limit was reached: the jump has been made, call again for the next pass
+  kEnded,       // return at top level, stop, or Flow::kStop
+  kFault,
+};
+
+struct RunResult {
+  RunStop stop = RunStop::kEnded;
+  std::uint64_t instructions = 0;
+  std::optional<Fault> fault;
+};
+
+class Thread {
+ public:
+  /// p: kPCount doubles shared by all threads; q: kQCount doubles of the thread's coordinate system.
+  Thread(double* p, double* q);
+
+  /// Stands at the top (or at label number `label`, if >= 0) of the program with all locals 0. False: no such label, then at the top.
+  bool begin(ProgramHandle program, std::int64_t label = -1);
+  /// Runs until something of RunStop happens. jump_back_limit: stop after this many backward jumps since the last call of
+  /// reset_jump_backs(); <= 0: never.
+  RunResult run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit);
+
+  void reset_jump_backs() { jump_backs_ = 0; }
+  bool active() const { return static_cast<bool>(program_); }
+  void stop() { program_ = {}; frames_.clear(); }
+
+  const ProgramHandle& program() const { return program_; }     // the buffer that executes now (a called subprogram too)
+  const ProgramHandle& top_program() const { return top_; }      // the buffer that was begun
+  bytecode::SourceLine source() const;                           // of the instruction being executed, or about to be
+
+  /// L(i) and R(i) of the frame on top; bounds are the caller's business (i < local_count, i < outgoing_count).
+  double& local(int i);
+  double& outgoing(int i);
+  std::array<double, bytecode::kCCount> c{};
+  std::array<double, bytecode::kDCount> d{};
+
+  double* p = nullptr;
+  double* q = nullptr;
+  int coord = 0;          // Ldata.Coord
+  int motor = 0;          // Ldata.Motor
+  int go_back = 10;       // Ldata.GoBack
+  int command_status = 0; // Ldata.CmdStatus
+  int owner = -1;         // for the host's use: PLC number, coordinate system, ...
+  void* context = nullptr;// for the host's use
+
+  void set_host_fault(Fault fault) { host_fault_ = std::move(fault); }
+
+ private:
+  friend class InterpreterCore;
+  ProgramHandle program_, top_;
+  std::vector<double> stack_;
+  std::size_t base_ = 0;
+  std::uint32_t pc_ = 0;
+  std::int64_t jump_backs_ = 0;
+  std::optional<Fault> host_fault_;
+  struct SavedFrame { ProgramHandle program; std::uint32_t return_pc; std::size_t base; };
+  std::vector<SavedFrame> frames_;
+};
+
+/// Evaluates a scalar function. Domain errors give nan.
+double apply_function(bytecode::Function function, std::span<const double> arguments, Host& host);
+
+}  // namespace pmac::runtime

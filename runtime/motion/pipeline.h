@@ -1,0 +1,85 @@
+// The way into the trajectory runtime: one coordinate system's hops 5 to 9. The owner adds motion commands as the program
+// calculates them and ends the sequence where motion has to stop; the pipeline blends, segments, maps to motors, plans
+// times and answers motor positions at any time up to its horizon. It streams: memory is bounded by the lookahead window,
+// never by the length of the program.
+//
+//   add() -> planner (path pieces, axis space) -> segmenter (motor space) -> lookahead (time) -> sample()
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/motion/types.h"
+
+namespace pmac::motion {
+
+struct PathPiece;
+struct Segment;
+struct TimedSegment;
+
+/// Called with each record as its stage finishes it, for --emit=path|segments|lookahead. Any may be empty.
+struct StageObservers {
+  std::function<void(const PathPiece&)> path;
+  std::function<void(const Segment&)> segment;
+  std::function<void(const TimedSegment&)> timed_segment;
+};
+
+class Pipeline {
+ public:
+  Pipeline();
+  ~Pipeline();
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+
+  /// Forgets everything and stands at rest at start_uu (motors at start_mu, as the map gives it) at start_time_ms.
+  /// Commands added later begin at start_time_ms, or when the sequence before has ended, whichever is later.
+  void reset(const PipelineConfig& config, const AxisVector& start_uu, double start_time_ms);
+
+  void observe(StageObservers observers);
+
+  /// Hop 5: the next command. The fault is the command's own (no circle, non-finite target, ...); the pipeline then stands
+  /// as before the call. Faults of later stages (kinematics of a segment) come out of add(), end_sequence() or plan_until().
+  [[nodiscard]] std::optional<runtime::Fault> add(const MotionCommand& command);
+
+  /// The last command added comes to rest with its td and tsd; what follows is a new sequence. Harmless when at rest.
+  [[nodiscard]] std::optional<runtime::Fault> end_sequence();
+
+  /// Not before this time: start of the next sequence (a dwell's or rapid move's end). Only at rest, after end_sequence().
+  void set_earliest_start(double time_ms);
+
+  /// A rapid move or jog has brought the axes elsewhere. Only at rest.
+  void set_position(const AxisVector& position_uu);
+
+  /// How many commands are known beyond the one that executes at time_ms (0: none).
+  int commands_ahead(double time_ms) const;
+  /// With lookahead: true while fewer than lookahead_segments segments are known beyond time_ms.
+  bool wants_more_segments(double time_ms) const;
+
+  /// Everything added is complete and its motion ends at or before time_ms.
+  bool at_rest(double time_ms) const;
+  /// Positions are final up to here (a sequence that has not been ended may go on beyond). Grows with add() and end_sequence().
+  double horizon_ms() const;
+  /// End of the motion that has been ended; the time at which the motors come to rest. Valid after end_sequence().
+  double end_ms() const;
+
+  /// Motor positions at times start_ms + k * period_ms, k = 0 .. count-1, all <= horizon_ms(), ascending from call to call.
+  /// position_mu: [motor][count], motor order of the map. velocity_mu_ms: same shape, or empty. Does not allocate.
+  void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
+
+  /// Source line of the command that executes at time_ms (as last sampled); SourceLine{} at rest.
+  SourceLine executing_source(double time_ms) const;
+
+  /// Axis position that commands have been calculated to (target of the last one).
+  const AxisVector& calculated_position() const;
+
+  /// Timings that have become final since the last call, in order of id; then forgets them. Appends to out.
+  void take_timings(std::vector<MoveTiming>& out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pmac::motion
