@@ -1,0 +1,67 @@
+// The way into the compiler. A Session compiles the files of a project in order, as the controller's load stream would see them,
+// and later on-line texts with the names that the project declared.
+//
+//   text -> tokens -> parse tree -> IR -> checked IR -> bytecode
+//
+//     Session session(options);
+//     std::optional<bytecode::Module> module = session.compile(files);
+//     print(session.diagnostics());
+#pragma once
+
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/bytecode/bytecode.h"
+#include "compiler/source/source.h"
+
+namespace pmac::compiler {
+
+struct InputFile {
+  std::string name;   // as messages show it; the folder of a relative #include
+  std::string text;
+};
+
+struct Options {
+  std::vector<std::string> include_dirs;
+  std::vector<std::pair<std::string, std::string>> defines;  // -D name[=text]
+  bool extra_warnings = false;                               // -Wextra: elements that are stored only, ...
+};
+
+class Session {
+ public:
+  explicit Session(Options options = {});
+  ~Session();
+  Session(Session&&) noexcept;
+
+  /// Compiles the files in order into one module. nullopt when there are errors; diagnostics() has all of them.
+  /// Names stay known for later calls.
+  std::optional<bytecode::Module> compile(const std::vector<InputFile>& files);
+
+  /// Compiles a line of on-line commands (also: open ... close) as one load script. `name` is shown as the file,
+  /// for example "-e" or "stdin". coord, motor: what & and # address when the text begins.
+  std::optional<bytecode::Module> compile_online(std::string_view text, std::string_view name);
+
+  /// Makes the names of a loaded object file known.
+  void adopt(const bytecode::Module& module);
+
+  /// Diagnostics of all calls so far; cleared by take.
+  source::Diagnostics& diagnostics();
+  const source::SourceManager& sources() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Stable text forms of the hops, for --emit=. Diagnostics go to the session.
+std::string emit_tokens(Session& session, const InputFile& file);
+std::string emit_tree(Session& session, const InputFile& file);
+std::string emit_ir(Session& session, const std::vector<InputFile>& files);
+std::string emit_symbols(const bytecode::Module& module);
+std::string emit_elements();
+
+}  // namespace pmac::compiler
