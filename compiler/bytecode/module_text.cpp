@@ -79,6 +79,12 @@ SourceLine source_of(const Program& program, std::uint32_t pc) {
   return after == program.lines.begin() ? SourceLine{} : std::prev(after)->source;
 }
 
+const LabelEntry* find_label(const Program& program, std::int64_t number) {
+  const auto found = std::lower_bound(program.labels.begin(), program.labels.end(), number,
+                                      [](const LabelEntry& label, std::int64_t wanted) { return label.number < wanted; });
+  return found != program.labels.end() && found->number == number ? &*found : nullptr;
+}
+
 std::string to_string(const Module& module, SourceLine source) {
   const bool has_file = source.file >= 0 && static_cast<std::size_t>(source.file) < module.files.size();
   if (!has_file) return "<no source>";

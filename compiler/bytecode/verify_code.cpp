@@ -38,7 +38,7 @@ class InstructionCheck {
   std::string registers(unsigned first, unsigned count = 1) const {
     const unsigned limit = program_.frame_size + program_.outgoing_count;
     if (first + count <= limit) return {};
-    return "register " + std::to_string(first + count - 1) + " is outside the frame of " + std::to_string(limit);
+    return "register " + std::to_string(first) + " is outside the frame of " + std::to_string(limit);
   }
   std::string both(std::string first, std::string second) const { return first.empty() ? second : first; }
   std::string variable(int count) const { return index(static_cast<std::size_t>(count), "variable number"); }
@@ -93,7 +93,7 @@ std::string InstructionCheck::control_operands() const {
   const auto verb = static_cast<ControlVerb>(in_.a);
   if (verb >= ControlVerb::kCount) return "no such verb";
   if (in_.c() != control_argument_count(verb)) return "wrong number of arguments";
-  return in_.c() == 0 ? std::string() : registers(in_.b(), in_.c());
+  return registers(in_.b(), in_.c());
 }
 
 std::string InstructionCheck::word_operands() const {
