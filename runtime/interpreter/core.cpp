@@ -111,6 +111,7 @@ InterpreterCore::Next InterpreterCore::after(Flow flow) {
       COUNT_RUN();                 \
       LEAVE();                     \
     }                              \
+    q = thread_.q;                 \
     NEXT();                        \
   } while (false)
 #define CALL_MEMBER(expression)                      \
@@ -147,7 +148,7 @@ void InterpreterCore::dispatch() {
   const double* constants = nullptr;
   double* r = nullptr;
   double* const p = thread_.p;
-  double* const q = thread_.q;
+  double* q = thread_.q;
   std::int64_t budget = budget_;
   std::uint32_t label_pc = 0;
   ENTER();
