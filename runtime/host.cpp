@@ -37,8 +37,8 @@ class MachineHost : public Host {
     }
   }
 
-  double read_i(Thread&, int number) override { return s_.i[static_cast<std::size_t>(number)]; }
-  void write_i(Thread&, int number, double value) override { s_.i[static_cast<std::size_t>(number)] = value; }
+  double read_i(Thread&, int number) override { return s_.i_values[static_cast<std::size_t>(number)]; }
+  void write_i(Thread&, int number, double value) override { s_.i_values[static_cast<std::size_t>(number)] = value; }
 
   double read_element(Thread& thread, const ElementAddress& address) override {
     return read_element_value(s_, Runner::of(thread), address);
@@ -253,7 +253,7 @@ void Machine::State::perform(const SyncEntry& entry, CoordSystem& from) {
     case VariableClass::kP: p[number] = with(p[number]); break;
     case VariableClass::kQ: from.q[number] = with(from.q[number]); break;
     case VariableClass::kM: host->write_m(thread, entry.target.number, with(host->read_m(thread, entry.target.number))); break;
-    case VariableClass::kI: i[number] = with(i[number]); break;
+    case VariableClass::kI: i_values[number] = with(i_values[number]); break;
     case VariableClass::kElement: host->write_element(thread, entry.element, with(host->read_element(thread, entry.element))); break;
     default: break;  // L, R, C, D are refused by the compiler as synchronous targets
   }

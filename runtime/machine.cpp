@@ -32,7 +32,7 @@ void adopt_files(bytecode::Module& module, std::vector<std::string>& files) {
 }  // namespace
 
 Machine::State::State(MachineOptions o)
-    : options(std::move(o)), p(bytecode::kPCount, 0.0), i(bytecode::kICount, 0.0), host(make_host(*this)) {
+    : options(std::move(o)), p(bytecode::kPCount, 0.0), i_values(bytecode::kICount, 0.0), host(make_host(*this)) {
   for (int n = 0; n < bytecode::kMaxMotors; ++n) motors[static_cast<std::size_t>(n)].number = n;
   for (int n = 0; n < bytecode::kMaxCoords; ++n) coords.push_back(std::make_unique<CoordSystem>(*this, n));
   online = std::make_unique<Runner>(RunnerKind::kOnline, 0, p.data(), coord(1).q.data());

@@ -43,7 +43,7 @@ struct Machine::State {
 
   MachineOptions options;
   ElementStore elements;
-  std::vector<double> p, i;
+  std::vector<double> p, i_values;
   IoSpace io;
   PointerTable pointers;
   std::array<Motor, bytecode::kMaxMotors> motors;

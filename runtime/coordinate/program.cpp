@@ -3,6 +3,7 @@
 // ticks: what follows a dwell starts at the dwell's own end.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
