@@ -1,0 +1,105 @@
+#include "runtime/motion/lookahead.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pmac::motion {
+namespace {
+
+/// Part of a segment from `from` on, `duration` long.
+Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
+  Segment part = segment;
+  part.start_ms += from_ms;
+  part.duration_ms = duration_ms;
+  for (MotorCubic& q : part.motor)
+    q = {q.position(from_ms), q.velocity(from_ms), q.c2 + 3 * q.c3 * from_ms, q.c3};
+  return part;
+}
+
+/// The segment run through with x from x0 to x1; one of them is not zero.
+TimedSegment timed(Segment segment, double x0, double x1) {
+  const double rate0 = std::sqrt(x0), rate1 = std::sqrt(x1);
+  TimedSegment result;
+  result.duration_ms = 2 * segment.duration_ms / (rate0 + rate1);
+  result.rate = rate0;
+  result.rate_slope = (x1 - x0) / (2 * segment.duration_ms);
+  result.segment = std::move(segment);
+  return result;
+}
+
+}  // namespace
+
+Lookahead::Lookahead(std::vector<MotorLimits> limits, int window)
+    : limits_(std::move(limits)), window_(std::max(1, window)), chunk_(1 + window_ / 4) {}
+
+void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
+  const RateLimits limits = rate_limits(segment, limits_);
+  const double bound = start_bound(segment, limits);
+  if (bound == 0 && !intervals_.empty() && intervals_.back().start_bound == 0) split_last();
+  intervals_.push_back({std::move(segment), limits, bound, 0});
+  if (waiting() < needed()) return;
+  backward(0);
+  commit(chunk_, 0, out);
+}
+
+void Lookahead::finish(std::vector<TimedSegment>& out) {
+  if (!intervals_.empty()) {
+    const bool steps = is_moving(intervals_.back().segment, true);
+    if (steps && intervals_.back().start_bound == 0) split_last();
+    const double end_beta = steps ? 0 : intervals_.back().limits.max_rate2;
+    backward(end_beta);
+    commit(waiting(), end_beta, out);
+  }
+  planned_ = 0;
+  at_start_ = true;
+}
+
+/// Largest x at the start of a segment that is about to be appended, by itself and its predecessor.
+double Lookahead::start_bound(const Segment& segment, const RateLimits& limits) const {
+  if (intervals_.empty()) return is_moving(segment, false) ? 0 : limits.max_rate2;
+  const Interval& before = intervals_.back();
+  if (velocity_steps(before.segment, segment)) return 0;
+  return std::min(before.limits.max_rate2, limits.max_rate2);
+}
+
+/// Motion has to stop at both ends of the last segment: in two halves it can move in between.
+void Lookahead::split_last() {
+  Interval whole = std::move(intervals_.back());
+  intervals_.pop_back();
+  planned_ = std::min(planned_, waiting());
+  const double half_ms = whole.segment.duration_ms / 2;
+  for (const double from_ms : {0.0, half_ms}) {
+    Segment part = part_of(whole.segment, from_ms, half_ms);
+    RateLimits limits = rate_limits(part, limits_);
+    const double bound = from_ms == 0 ? 0 : limits.max_rate2;
+    intervals_.push_back({std::move(part), std::move(limits), bound, 0});
+  }
+}
+
+/// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are.
+void Lookahead::backward(double end_beta) {
+  double beta = end_beta;
+  for (int i = waiting() - 1; i >= 0; --i) {
+    Interval& interval = intervals_[static_cast<std::size_t>(i)];
+    beta = interval.limits.largest_start(interval.start_bound, beta);
+    if (i < planned_ && beta == interval.beta) break;
+    interval.beta = beta;
+  }
+  planned_ = waiting();
+}
+
+void Lookahead::commit(int count, double end_beta, std::vector<TimedSegment>& out) {
+  if (at_start_) rate2_ = intervals_.front().beta;
+  at_start_ = false;
+  for (int i = 0; i < count; ++i) {
+    Interval interval = std::move(intervals_.front());
+    intervals_.pop_front();
+    --planned_;
+    const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta;
+    const double next = interval.limits.largest_end(rate2_, next_beta);
+    out.push_back(timed(std::move(interval.segment), rate2_, next));
+    rate2_ = next;
+  }
+}
+
+}  // namespace pmac::motion
