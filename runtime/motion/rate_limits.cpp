@@ -86,6 +86,12 @@ double RateLimits::largest_end(double x0, double x1_max) const {
   return std::max(0.0, x1);
 }
 
+bool RateLimits::allows(double x0, double x1) const {
+  if (std::max(x0, x1) > max_rate2) return false;
+  return std::all_of(rows.begin(), rows.end(),
+                     [&](const RateRow& row) { return std::abs(row.start * x0 + row.end * x1) <= 1 + 2 * kRoundingRoom; });
+}
+
 RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits) {
   RateLimits result;
   for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
