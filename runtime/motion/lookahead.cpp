@@ -6,6 +6,9 @@
 namespace pmac::motion {
 namespace {
 
+/// Shorter parts of a segment are not worth a node.
+constexpr double kMinPart_ms = 0.01;
+
 /// Part of a segment from `from` on, `duration` long.
 Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
   Segment part = segment;
@@ -97,9 +100,40 @@ void Lookahead::commit(int count, double end_beta, std::vector<TimedSegment>& ou
     --planned_;
     const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta;
     const double next = interval.limits.largest_end(rate2_, next_beta);
-    out.push_back(timed(std::move(interval.segment), rate2_, next));
+    const bool meets_beta = next == next_beta && rate2_ < interval.beta;
+    if (!meets_beta || !emit_with_switch(interval, rate2_, next, out)) out.push_back(timed(std::move(interval.segment), rate2_, next));
     rate2_ = next;
   }
+}
+
+/// Within this segment motion changes from speeding up to slowing down. One more node where the two meet makes both complete:
+///
+///      x       /\              rising as the first part allows, falling as the second part asks
+///     x0  ___/    \___ x1
+///
+/// False where that is no faster; nothing is appended then.
+bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const {
+  constexpr int kSteps = 30;
+  const double whole_ms = interval.segment.duration_ms;
+  const auto rise = [&](double at_ms) {
+    return rate_limits(part_of(interval.segment, 0, at_ms), limits_).largest_end(x0, interval.limits.max_rate2);
+  };
+  const auto fall = [&](double at_ms) {
+    return rate_limits(part_of(interval.segment, at_ms, whole_ms - at_ms), limits_).largest_start(interval.limits.max_rate2, x1);
+  };
+  double low = 0, high = whole_ms;
+  for (int i = 0; i < kSteps; ++i) {
+    const double middle = (low + high) / 2;
+    (rise(middle) < fall(middle) ? low : high) = middle;
+  }
+  if (std::min(low, whole_ms - low) < kMinPart_ms) return false;
+  const double peak = std::min(rise(low), fall(low));
+  Segment first = part_of(interval.segment, 0, low), second = part_of(interval.segment, low, whole_ms - low);
+  const bool faster = peak > x0 + (x1 - x0) * low / whole_ms;
+  if (!faster || !rate_limits(first, limits_).allows(x0, peak) || !rate_limits(second, limits_).allows(peak, x1)) return false;
+  out.push_back(timed(std::move(first), x0, peak));
+  out.push_back(timed(std::move(second), peak, x1));
+  return true;
 }
 
 }  // namespace pmac::motion

@@ -47,6 +47,7 @@ class Lookahead {
   void split_last();
   void backward(double end_beta);
   void commit(int count, double end_beta, std::vector<TimedSegment>& out);
+  bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
   double start_bound(const Segment& segment, const RateLimits& limits) const;
 
   std::vector<MotorLimits> limits_;

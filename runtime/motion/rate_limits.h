@@ -24,6 +24,8 @@ struct RateLimits {
   double largest_start(double x0_max, double x1_max) const;
   /// Largest x1 <= x1_max that goes with x0.
   double largest_end(double x0, double x1_max) const;
+  /// Both ends are within all limits.
+  bool allows(double x0, double x1) const;
 };
 
 RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits);
