@@ -102,7 +102,7 @@ class CoordSystem {
   void ensure_sequence(double time_ms);
   void start_dwell(double time_ms);
   void start_rapid(double time_ms);
-  void collect_timings(double time_ms);
+  void collect_timings();
   void perform_due(double time_ms);
   void perform_up_to(std::uint64_t move_id);
   void record(const MoveRecord& move);
@@ -146,8 +146,8 @@ class CoordSystem {
   std::deque<PendingMove> pending_moves_;
   std::vector<motion::MoveTiming> timings_;
   std::deque<SyncEntry> sync_;
-  struct DueAssignment { std::uint64_t id; double time_ms; };
-  std::deque<DueAssignment> due_;
+  std::vector<motion::SyncTime> sync_times_;
+  std::deque<motion::SyncTime> due_;   // ascending
 };
 
 }  // namespace pmac::runtime

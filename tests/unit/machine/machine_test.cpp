@@ -123,7 +123,7 @@ TEST_CASE("an empty endless loop costs one interrupt a pass and ends at the time
   CHECK(outcome.time_ms == 1000.0);
   REQUIRE(outcome.running.size() == 1);
   CHECK(outcome.running[0] == "prog 1 at loop.pmc:3");
-  CHECK(outcome.instructions < 3 * 1000 / 0.44274211 + 100);  // two jump-backs a pass
+  CHECK(static_cast<double>(outcome.instructions) < 3 * 1000 / 0.44274211 + 100);  // two jump-backs a pass
 }
 
 TEST_CASE("a target that is not finite stops the program at its line and leaves the motor at rest", "[machine]") {
@@ -169,4 +169,57 @@ TEST_CASE("the same module gives the same samples twice", "[machine]") {
   }
   REQUIRE(first.values.size() > 13000);  // 6 s at 2.26 kHz
   CHECK(first.values == second.values);
+}
+
+TEST_CASE("a synchronous assignment acts at the start of the blend into the next move", "[machine]") {
+  bytecode::Module module;
+  module.files = {"sync.pmc"};
+  bytecode::PointerDefinition pump;
+  pump.first_m = pump.last_m = 8192;
+  pump.kind = bytecode::PointerKind::kIo;
+  pump.address = 0xA0000C;
+  pump.start_bit = 12;
+  pump.width = 1;
+  pump.name = "Pump";
+  module.pointer_definitions = {pump};
+  bytecode::SyncTarget target;
+  target.variable_class = bytecode::VariableClass::kM;
+  target.number = 8192;
+  module.sync_targets = {target};
+  ProgramBuilder prog(module, ProgramKind::kProg, 1);
+  prog.set(MotionParameter::kTa, 100);
+  prog.set(MotionParameter::kTs, 0);
+  prog.set(MotionParameter::kFeed, 10);
+  const auto sync = [&](double value) {
+    prog.load(prog.temporary(), value);
+    prog.op(bytecode::Instruction::with_imm(bytecode::Opcode::kSyncStore, prog.temporary(), 0));
+  };
+  prog.move("X", 10);
+  sync(1);
+  prog.move("X", 30);
+  sync(0);
+  prog.dwell(10);
+  sync(1);  // after the last move: never executed
+  const std::uint32_t index = prog.finish();
+  ProgramBuilder load(module, ProgramKind::kOnline, 0);
+  load.address_coord(1);
+  load.define_axis(1, "X", 1000);
+  load.op(bytecode::Instruction::with_imm(bytecode::Opcode::kDefinePointer, 0, 0));
+  load.install(index);
+  load.control(ControlVerb::kStart, {1, 1});
+  module.load_order = {load.finish()};
+
+  std::vector<OutputChange> changes;
+  MachineOptions options;
+  options.observers.output = [&](const OutputChange& c) { changes.push_back(c); };
+  Machine machine(options);
+  machine.load(std::move(module));
+  machine.run({});
+  REQUIRE(changes.size() == 2);
+  // The corner lies at Ta/2 + 10/10 s = 1050 ms; the blend begins Ta/2 before it. The dwell begins when the second move has
+  // stopped: 1050 + 20/10 s + Ta/2.
+  CHECK(changes[0].time_ms == Approx(1000.0).margin(1e-9));
+  CHECK(changes[0].value == 1.0);
+  CHECK(changes[0].name == "Pump");
+  CHECK(changes[1].time_ms == Approx(3100.0).margin(1e-9));
 }
