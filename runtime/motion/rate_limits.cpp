@@ -92,25 +92,34 @@ bool RateLimits::allows(double x0, double x1) const {
                      [&](const RateRow& row) { return std::abs(row.start * x0 + row.end * x1) <= 1 + 2 * kRoundingRoom; });
 }
 
-RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits) {
+RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double scale) {
   RateLimits result;
+  const double unit = 1 / (scale * scale);
+  result.max_rate2 = scale * scale;
   for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
     const MotorCubic& q = segment.motor[m];
-    if (limits[m].inv_amax_ms2_mu > 0) add_acceleration_rows(q, segment.duration_ms, limits[m].inv_amax_ms2_mu, result.rows);
-    const double speed = largest_speed(q, segment.duration_ms), allowed = limits[m].max_speed_mu_ms;
-    if (allowed > 0 && speed > allowed) result.max_rate2 = std::min(result.max_rate2, (allowed / speed) * (allowed / speed));
+    const double inv_accel = limits[m].inv_amax_ms2_mu * unit, allowed = limits[m].max_speed_mu_ms;
+    if (inv_accel > 0) add_acceleration_rows(q, segment.duration_ms, inv_accel, result.rows);
+    const double speed = largest_speed(q, segment.duration_ms) / scale;
+    if (allowed > 0) result.max_rate2 = std::min(result.max_rate2, (allowed / speed) * (allowed / speed));
   }
   return result;
 }
 
-bool velocity_steps(const Segment& before, const Segment& after) {
-  double fastest = 0, difference = 0;
+double speed_ratio(const Segment& before, const Segment& after) {
+  double before2 = 0, after2 = 0, product = 0, difference2 = 0;
   for (std::size_t m = 0; m < before.motor.size(); ++m) {
     const double v0 = before.motor[m].velocity(before.duration_ms), v1 = after.motor[m].c1;
-    fastest = std::max({fastest, std::abs(v0), std::abs(v1), largest_speed(before.motor[m], before.duration_ms) * kRest});
-    difference = std::max(difference, std::abs(v1 - v0));
+    before2 += v0 * v0;
+    after2 += v1 * v1;
+    product += v0 * v1;
+    difference2 += (v1 - v0) * (v1 - v0);
   }
-  return difference > kSameVelocity * fastest;
+  const double rounding2 = kSameVelocity * kSameVelocity * std::max(before2, after2);
+  if (difference2 <= rounding2 || (!is_moving(before, true) && !is_moving(after, false))) return 1;
+  if (!is_moving(before, true) || !is_moving(after, false)) return 0;
+  const bool same_direction = product > 0 && before2 * after2 - product * product <= kSameVelocity * kSameVelocity * before2 * after2;
+  return same_direction ? std::sqrt(after2 / before2) : 0;
 }
 
 bool is_moving(const Segment& segment, bool at_end) {
