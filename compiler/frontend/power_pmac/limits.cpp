@@ -7,7 +7,7 @@
 namespace pmac::compiler::power_pmac {
 namespace {
 
-using Lexer = grammar::PowerPmacLexer;
+using T = grammar::PowerPmacParser;
 
 constexpr int kMaxParentheses = 200;
 constexpr int kMaxBlocks = 100;
@@ -16,11 +16,11 @@ constexpr int kMaxElseIf = 500;
 constexpr int kMaxOperators = 1000;   // of one statement
 constexpr int kMaxPrefix = 200;       // ---- in front of one operand
 
-bool is_control(std::size_t type) { return type == Lexer::IF || type == Lexer::WHILE || type == Lexer::DO || type == Lexer::ELSE || type == Lexer::SWITCH; }
+bool is_control(std::size_t type) { return type == T::IF || type == T::WHILE || type == T::DO || type == T::ELSE || type == T::SWITCH; }
 
 bool is_operator(std::size_t type) {
-  return type == Lexer::PLUS || type == Lexer::MINUS || type == Lexer::STAR || type == Lexer::AMPERSAND || type == Lexer::SYNC_ASSIGN ||
-         (type < Lexer::SEMICOLON && type != 0);
+  return type == T::PLUS || type == T::MINUS || type == T::STAR || type == T::AMPERSAND || type == T::SYNC_ASSIGN ||
+         (type < T::SEMICOLON && type != 0);
 }
 
 /// Follows the nesting token by token.
@@ -35,11 +35,11 @@ class NestingScan {
 
  private:
   const char* take_brackets(std::size_t type, bool new_line) {
-    const bool ends_statement = type == Lexer::SEMICOLON || type == Lexer::LEFT_BRACE || type == Lexer::RIGHT_BRACE || type == Lexer::CLOSE || type == Lexer::OPEN;
+    const bool ends_statement = type == T::SEMICOLON || type == T::LEFT_BRACE || type == T::RIGHT_BRACE || type == T::CLOSE || type == T::OPEN;
     if (ends_statement) parentheses_ = 0;
     if (ends_statement || (new_line && parentheses_ == 0 && !is_operator(last_))) operators_ = 0;
-    if (type == Lexer::LEFT || type == Lexer::LEFT_BRACKET) ++parentheses_;
-    if ((type == Lexer::RIGHT || type == Lexer::RIGHT_BRACKET) && parentheses_ > 0) --parentheses_;
+    if (type == T::LEFT || type == T::LEFT_BRACKET) ++parentheses_;
+    if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && parentheses_ > 0) --parentheses_;
     prefix_ = is_operator(type) ? prefix_ + 1 : 0;
     operators_ += is_operator(type);
     if (parentheses_ > kMaxParentheses) return "parentheses are nested too deep";
@@ -48,27 +48,27 @@ class NestingScan {
   }
 
   const char* take_control(std::size_t type) {
-    if (type == Lexer::LEFT_BRACE) {
+    if (type == T::LEFT_BRACE) {
       if (static_cast<int>(blocks_.size()) >= kMaxBlocks) return "blocks are nested too deep";
       blocks_.push_back({else_ifs_, bare_});
       else_ifs_ = bare_ = 0;
-    } else if (type == Lexer::RIGHT_BRACE && !blocks_.empty()) {
+    } else if (type == T::RIGHT_BRACE && !blocks_.empty()) {
       else_ifs_ = blocks_.back().else_ifs;
       bare_ = blocks_.back().bare;
       blocks_.pop_back();
-    } else if (type == Lexer::CLOSE || type == Lexer::OPEN) {
+    } else if (type == T::CLOSE || type == T::OPEN) {
       blocks_.clear();
       else_ifs_ = bare_ = 0;
     } else if (is_control(type)) {
-      const bool begins_chain = type != Lexer::ELSE && last_ != Lexer::ELSE;
+      const bool begins_chain = type != T::ELSE && last_ != T::ELSE;
       if (begins_chain && !header_ended_) else_ifs_ = bare_ = 0;
       ++bare_;
-      else_ifs_ += type == Lexer::ELSE;
+      else_ifs_ += type == T::ELSE;
     }
-    if (parentheses_ == 0 && type != Lexer::RIGHT && !is_control(type)) header_ended_ = false;
-    if (type == Lexer::RIGHT && parentheses_ == 0) header_ended_ = in_header_;
-    if (is_control(type)) in_header_ = true, header_ended_ = type == Lexer::ELSE || type == Lexer::DO;
-    else if (parentheses_ == 0 && type != Lexer::RIGHT) in_header_ = false;
+    if (parentheses_ == 0 && type != T::RIGHT && !is_control(type)) header_ended_ = false;
+    if (type == T::RIGHT && parentheses_ == 0) header_ended_ = in_header_;
+    if (is_control(type)) in_header_ = true, header_ended_ = type == T::ELSE || type == T::DO;
+    else if (parentheses_ == 0 && type != T::RIGHT) in_header_ = false;
     last_ = type;
     if (else_ifs_ > kMaxElseIf) return "this chain of else if is too long; use switch";
     if (bare_ - 2 * else_ifs_ > kMaxBareNesting) return "statements are nested too deep";

@@ -63,8 +63,8 @@ class Recovery : public antlr4::DefaultErrorStrategy {
 
  private:
   static bool is_inside_braces(antlr4::Parser& parser) {
-    const auto* context = parser.getContext();
-    return std::any_of(context->children.begin(), context->children.end(), [](const antlr4::tree::ParseTree* child) { return child->getText() == "{"; });
+    auto* context = parser.getContext();
+    return std::any_of(context->children.begin(), context->children.end(), [](antlr4::tree::ParseTree* child) { return child->getText() == "{"; });
   }
 
   void skip_statement(antlr4::Parser& parser, bool consume_first) {
@@ -108,6 +108,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
 
   void describe(antlr4::Parser& parser, const antlr4::RecognitionException& error) {
     const auto* offending = error.getOffendingToken();
+    if (parser.getContext()->getRuleIndex() == Parser::RuleBuffer && offending->getType() == Token::EOF) return report_open_buffer(parser);
     if (describe_missing_brace(parser, *offending) || describe_unknown_word(parser, *offending)) return;
     const auto expected = error.getExpectedTokens();
     const bool one_expected = expected.size() == 1;

@@ -10,7 +10,7 @@
 namespace pmac::compiler::power_pmac {
 namespace {
 
-using Lexer = grammar::PowerPmacLexer;
+using T = grammar::PowerPmacParser;  // its token numbers
 using Table = std::unordered_map<std::string, std::size_t>;
 
 std::string lower(std::string_view text) {
@@ -22,27 +22,32 @@ std::string lower(std::string_view text) {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 
+const antlr4::dfa::Vocabulary& token_vocabulary() {
+  static T parser(nullptr);
+  return parser.getVocabulary();
+}
+
 /// The keyword tokens of the grammar stand in one run; their names are the words.
 void add_keywords(Table& table, std::size_t first, std::size_t last) {
-  const auto& vocabulary = Lexer(nullptr).getVocabulary();
+  const auto& vocabulary = token_vocabulary();
   for (std::size_t type = first; type <= last; ++type) table[lower(vocabulary.getSymbolicName(type))] = type;
 }
 
 Table make_buffer_keywords() {
   Table table;
-  add_keywords(table, Lexer::OPEN, Lexer::WHILE);
+  add_keywords(table, T::OPEN, T::WHILE);
   return table;
 }
 
 Table make_online_keywords() {
   Table table;
-  add_keywords(table, Lexer::OPEN, Lexer::STEP);
+  add_keywords(table, T::OPEN, T::STEP);
   table.erase("local");
-  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save"}) table[word] = Lexer::COMMAND;
+  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save"}) table[word] = T::COMMAND;
   for (const char* word : {"fsave", "reboot", "vers", "type", "cpu", "cid", "size", "buffer", "list", "clear", "undefine", "date", "time", "system", "free", "dir"})
-    table[word] = Lexer::OTHER_COMMAND;
-  table.insert({{"b", Lexer::ON_B}, {"j", Lexer::ON_J}, {"out", Lexer::ON_OUT}, {"cx", Lexer::CX}, {"define", Lexer::DEFINE},
-                {"delete", Lexer::DELETE}, {"lookahead", Lexer::LOOKAHEAD}, {"echo", Lexer::ECHO}});
+    table[word] = T::OTHER_COMMAND;
+  table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"cx", T::CX}, {"define", T::DEFINE},
+                {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}});
   return table;
 }
 
@@ -59,21 +64,21 @@ std::size_t letter_type(std::string_view run) {
   const std::string word = lower(run);
   if (word.size() == 1) {
     switch (word[0]) {
-      case 'p': case 'q': case 'l': return Lexer::VAR;
-      case 'c': return Lexer::LETTER_C;
-      case 'd': return Lexer::LETTER_D;
-      case 'f': return Lexer::LETTER_F;
-      case 'i': return Lexer::LETTER_I;
-      case 'm': return Lexer::LETTER_M;
-      case 'n': return Lexer::LETTER_N;
-      case 'r': return Lexer::LETTER_R;
-      case 'j': case 'k': return Lexer::VECTOR;
-      case 'g': case 't': case 's': case 'h': return Lexer::CODE;
+      case 'p': case 'q': case 'l': return T::VAR;
+      case 'c': return T::LETTER_C;
+      case 'd': return T::LETTER_D;
+      case 'f': return T::LETTER_F;
+      case 'i': return T::LETTER_I;
+      case 'm': return T::LETTER_M;
+      case 'n': return T::LETTER_N;
+      case 'r': return T::LETTER_R;
+      case 'j': case 'k': return T::VECTOR;
+      case 'g': case 't': case 's': case 'h': return T::CODE;
       default: break;
     }
   }
-  if (word == "ii" || word == "jj" || word == "kk") return Lexer::VECTOR;
-  return bytecode::axis_index_from_name(word) >= 0 ? Lexer::AXIS : 0;
+  if (word == "ii" || word == "jj" || word == "kk") return T::VECTOR;
+  return bytecode::axis_index_from_name(word) >= 0 ? T::AXIS : 0;
 }
 
 std::size_t run_length(std::string_view word) {
@@ -88,38 +93,38 @@ WordLexer::WordLexer(antlr4::ANTLRInputStream* input, std::string_view text, Dec
 }
 
 std::unique_ptr<antlr4::Token> WordLexer::nextToken() {
-  std::unique_ptr<antlr4::Token> token = PowerPmacLexer::nextToken();
-  std::size_t type = token->getType();
-  if (line_is_buffered_ && token->getLine() != buffered_line_) line_is_buffered_ = false;
-  if (axis_definition_ && token->getLine() != axis_line_) axis_definition_ = false;
-  if (type == WORD) {
-    const std::size_t begin = token->getStartIndex();
-    const Word word = classify(text_.substr(begin, token->getStopIndex() + 1 - begin), begin, token->getLine());
-    auto* writable = dynamic_cast<antlr4::WritableToken*>(token.get());
+  std::unique_ptr<antlr4::Token> next = PowerPmacLexer::nextToken();
+  std::size_t kind = next->getType();
+  if (line_is_buffered_ && next->getLine() != buffered_line_) line_is_buffered_ = false;
+  if (axis_definition_ && next->getLine() != axis_line_) axis_definition_ = false;
+  if (kind == T::WORD) {
+    const std::size_t begin = next->getStartIndex();
+    const Word word = classify(text_.substr(begin, next->getStopIndex() + 1 - begin), begin, next->getLine());
+    auto* writable = dynamic_cast<antlr4::WritableToken*>(next.get());
     writable->setType(word.type);
-    type = word.type;
-    if (begin + word.length <= token->getStopIndex()) {
-      split_end_ = std::max(split_end_, token->getStopIndex() + 1);
-      static_cast<antlr4::CommonToken*>(token.get())->setStopIndex(begin + word.length - 1);
-      setCharPositionInLine(token->getCharPositionInLine() + word.length);
+    kind = word.type;
+    if (begin + word.length <= next->getStopIndex()) {
+      split_end_ = std::max(split_end_, next->getStopIndex() + 1);
+      static_cast<antlr4::CommonToken*>(next.get())->setStopIndex(begin + word.length - 1);
+      setCharPositionInLine(next->getCharPositionInLine() + word.length);
       _input->seek(begin + word.length);
     }
-    if (type == NAME) declare(text_.substr(begin, word.length));
+    if (kind == T::NAME) declare(text_.substr(begin, word.length));
   }
-  if (type == NUMBER) last_number_is_zero_ = text_.substr(token->getStartIndex(), token->getStopIndex() + 1 - token->getStartIndex()) == "0";
-  follow(type, token->getLine());
-  last_end_ = token->getStopIndex() + 1;
-  last_line_ = token->getLine();
-  return token;
+  if (kind == T::NUMBER) last_number_is_zero_ = text_.substr(next->getStartIndex(), next->getStopIndex() + 1 - next->getStartIndex()) == "0";
+  follow(kind, next->getLine());
+  last_end_ = next->getStopIndex() + 1;
+  last_line_ = next->getLine();
+  return next;
 }
 
 WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, std::size_t line) {
-  const Word whole_name{NAME, word.size()};
+  const Word whole_name{T::NAME, word.size()};
   const bool is_rest = begin < split_end_;
-  if (last_[0] == DOT) return {MEMBER, word.size()};  // behind a dot
+  if (last_[0] == T::DOT) return {T::MEMBER, word.size()};  // behind a dot
   if (axis_definition_) {
-    const std::size_t type = axis_definition_type(word.substr(0, run_length(word)));
-    if (type) return {type, run_length(word)};
+    const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
+    if (kind) return {kind, run_length(word)};
     axis_definition_ = false;
   }
   if (expect_name_ || (!is_rest && (names_.contains(word) || must_be_name(word, begin + word.size())))) return whole_name;
@@ -135,8 +140,8 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
 bool WordLexer::must_be_name(std::string_view word, std::size_t end) const {
   const std::size_t next = text_.find_first_not_of(" \t", end);
   const auto at = [&](std::size_t i) { return i < text_.size() ? text_[i] : '\0'; };
-  if (last_[0] == CALL) return true;
-  const bool opens_named = (last_[0] == PROG || last_[0] == PLC || last_[0] == SUBPROG) && (last_[1] == OPEN || find(buffer_keywords(), word) == 0);
+  if (last_[0] == T::CALL) return true;
+  const bool opens_named = (last_[0] == T::PROG || last_[0] == T::PLC || last_[0] == T::SUBPROG) && (last_[1] == T::OPEN || find(buffer_keywords(), word) == 0);
   if (opens_named) return true;
   const bool has_digit = std::any_of(word.begin(), word.end(), is_digit);
   if (at(end) == '[' || (at(end) == '.' && is_letter(at(end + 1)))) return !(has_digit && split(word, end - word.size()).type);
@@ -146,19 +151,19 @@ bool WordLexer::must_be_name(std::string_view word, std::size_t end) const {
 
 std::size_t WordLexer::axis_definition_type(std::string_view run) const {
   const std::size_t before = last_[0];
-  if (before == NUMBER && last_[1] == ARROW && last_number_is_zero_) return 0;  // -> 0 is complete
-  const bool expected = before == ARROW || before == NUMBER || before == PLUS || before == MINUS;
+  if (before == T::NUMBER && last_[1] == T::ARROW && last_number_is_zero_) return 0;  // -> 0 is complete
+  const bool expected = before == T::ARROW || before == T::NUMBER || before == T::PLUS || before == T::MINUS;
   const std::string word = lower(run);
   if (!expected) return 0;
-  if (word == "i" && before == ARROW) return LETTER_I;
-  if (word == "s" && before == ARROW) return CODE;
-  const std::size_t type = letter_type(run);
-  return type == AXIS || type == LETTER_C ? type : 0;
+  if (word == "i" && before == T::ARROW) return T::LETTER_I;
+  if (word == "s" && before == T::ARROW) return T::CODE;
+  const std::size_t kind = letter_type(run);
+  return kind == T::AXIS || kind == T::LETTER_C ? kind : 0;
 }
 
 std::size_t WordLexer::online_type(std::string_view run, bool value_follows) const {
   const std::size_t letter = letter_type(run);
-  const bool variable = letter == VAR || letter == LETTER_C || letter == LETTER_D || letter == LETTER_I || letter == LETTER_M || letter == LETTER_R;
+  const bool variable = letter == T::VAR || letter == T::LETTER_C || letter == T::LETTER_D || letter == T::LETTER_I || letter == T::LETTER_M || letter == T::LETTER_R;
   if (variable && value_follows) return letter;
   return find(online_keywords(), run);
 }
@@ -172,15 +177,15 @@ std::size_t WordLexer::type_of_run(std::string_view run, bool digit_follows, std
   return keyword ? keyword : letter_type(run);
 }
 
-/// The first run of a word whose every run of letters is a keyword, a letter or an axis; type 0 otherwise.
+/// The first run of a word whose every run of letters is a keyword, a letter or an axis; kind 0 otherwise.
 WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const {
   Word first{0, 0};
   for (std::size_t at = 0; at < word.size();) {
     const std::size_t length = run_length(word.substr(at));
     const bool digit_follows = at + length < word.size();
-    const std::size_t type = type_of_run(word.substr(at, length), digit_follows, begin + at);
-    if (type == 0) return at == 0 && length == word.size() ? split_commands(word, begin) : Word{0, 0};
-    if (at == 0) first = {type, length};
+    const std::size_t kind = type_of_run(word.substr(at, length), digit_follows, begin + at);
+    if (kind == 0) return at == 0 && length == word.size() ? split_commands(word, begin) : Word{0, 0};
+    if (at == 0) first = {kind, length};
     at += length;
     while (at < word.size() && is_digit(word[at])) ++at;
   }
@@ -189,9 +194,9 @@ WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const
 
 /// &1qa: command letters glued to an address.
 WordLexer::Word WordLexer::split_commands(std::string_view word, std::size_t begin) const {
-  const bool glued = !in_buffer_ && (last_[0] == NUMBER || last_[0] == COMMAND || last_[0] == STAR) && last_end_ == begin;
+  const bool glued = !in_buffer_ && (last_[0] == T::NUMBER || last_[0] == T::COMMAND || last_[0] == T::STAR) && last_end_ == begin;
   if (!glued || word.size() > 4) return {0, 0};
-  const auto is_command = [](std::string_view run) { return find(online_keywords(), run) == COMMAND; };
+  const auto is_command = [](std::string_view run) { return find(online_keywords(), run) == T::COMMAND; };
   for (std::size_t at = 0; at < word.size(); ++at)
     if (!is_command(word.substr(at, 1)) && lower(word.substr(at, 1)) != "j") return {0, 0};
   return {find(online_keywords(), word.substr(0, 1)), 1};
@@ -204,37 +209,37 @@ void WordLexer::declare(std::string_view name) {
   if (declaring_ != Declaring::kParameters) expect_name_ = false;
 }
 
-void WordLexer::follow_declaration(std::size_t type, std::size_t line) {
-  switch (type) {
-    case GLOBAL: case CSGLOBAL: case PTR: declaring_ = Declaring::kGlobal; expect_name_ = true; depth_ = 0; return;
-    case LOCAL: declaring_ = Declaring::kLocal; expect_name_ = true; depth_ = 0; return;
+void WordLexer::follow_declaration(std::size_t kind, std::size_t line) {
+  switch (kind) {
+    case T::GLOBAL: case T::CSGLOBAL: case T::PTR: declaring_ = Declaring::kGlobal; expect_name_ = true; depth_ = 0; return;
+    case T::LOCAL: declaring_ = Declaring::kLocal; expect_name_ = true; depth_ = 0; return;
     default: break;
   }
-  const bool opens_parameters = type == LEFT && ((last_[0] == NAME && (last_[1] == SUBPROG || (last_[1] == COLON && last_[2] == SUB))) || (last_[0] == NUMBER && last_[1] == SUBPROG && last_[2] == OPEN));
+  const bool opens_parameters = kind == T::LEFT && ((last_[0] == T::NAME && (last_[1] == T::SUBPROG || (last_[1] == T::COLON && last_[2] == T::SUB))) || (last_[0] == T::NUMBER && last_[1] == T::SUBPROG && last_[2] == T::OPEN));
   if (opens_parameters) { declaring_ = Declaring::kParameters; expect_name_ = true; depth_ = 0; return; }
   if (declaring_ == Declaring::kNothing) return;
-  const bool ended_by_line = line != last_line_ && last_[0] != COMMA && depth_ == 0 && declaring_ != Declaring::kParameters && type != NAME;
-  depth_ += type == LEFT ? 1 : type == RIGHT ? -1 : 0;
-  const bool ended = type == SEMICOLON || ended_by_line || (declaring_ == Declaring::kParameters && depth_ < 0) || type == CLOSE || type == OPEN;
+  const bool ended_by_line = line != last_line_ && last_[0] != T::COMMA && depth_ == 0 && declaring_ != Declaring::kParameters && kind != T::NAME;
+  depth_ += kind == T::LEFT ? 1 : kind == T::RIGHT ? -1 : 0;
+  const bool ended = kind == T::SEMICOLON || ended_by_line || (declaring_ == Declaring::kParameters && depth_ < 0) || kind == T::CLOSE || kind == T::OPEN;
   if (ended) { declaring_ = Declaring::kNothing; expect_name_ = false; return; }
-  if (type == COMMA && depth_ == 0) expect_name_ = true;
+  if (kind == T::COMMA && depth_ == 0) expect_name_ = true;
 }
 
-void WordLexer::follow_mode(std::size_t type, std::size_t line) {
-  if (type == OPEN) in_buffer_ = true;
-  if (type == CLOSE) { in_buffer_ = false; names_.local.clear(); }
-  if (type == CX) { line_is_buffered_ = true; buffered_line_ = line; }
-  const bool motor_arrow = type == ARROW && !in_buffer_ && (last_[0] == HASH || (last_[0] == NUMBER && last_[1] == HASH));
+void WordLexer::follow_mode(std::size_t kind, std::size_t line) {
+  if (kind == T::OPEN) in_buffer_ = true;
+  if (kind == T::CLOSE) { in_buffer_ = false; names_.local.clear(); }
+  if (kind == T::CX) { line_is_buffered_ = true; buffered_line_ = line; }
+  const bool motor_arrow = kind == T::ARROW && !in_buffer_ && (last_[0] == T::HASH || (last_[0] == T::NUMBER && last_[1] == T::HASH));
   if (motor_arrow) { axis_definition_ = true; axis_line_ = line; }
-  else if (axis_definition_ && type != NUMBER && type != AXIS && type != LETTER_C && type != PLUS && type != MINUS) axis_definition_ = false;
+  else if (axis_definition_ && kind != T::NUMBER && kind != T::AXIS && kind != T::LETTER_C && kind != T::PLUS && kind != T::MINUS) axis_definition_ = false;
 }
 
-void WordLexer::follow(std::size_t type, std::size_t line) {
-  follow_declaration(type, line);
-  follow_mode(type, line);
+void WordLexer::follow(std::size_t kind, std::size_t line) {
+  follow_declaration(kind, line);
+  follow_mode(kind, line);
   last_[2] = last_[1];
   last_[1] = last_[0];
-  last_[0] = type;
+  last_[0] = kind;
 }
 
 const std::vector<std::string_view>& keyword_names() {
@@ -247,17 +252,19 @@ const std::vector<std::string_view>& keyword_names() {
   return names;
 }
 
+std::string token_name(std::size_t type) { return token_vocabulary().getSymbolicName(type); }
+
 std::string describe_token(std::size_t type) {
-  const auto& vocabulary = Lexer(nullptr).getVocabulary();
+  const auto& vocabulary = token_vocabulary();
   const std::string literal = vocabulary.getLiteralName(type);
   if (!literal.empty()) return literal;
   switch (type) {
-    case Lexer::NUMBER: return "a number";
-    case Lexer::NAME: return "a name";
-    case Lexer::MEMBER: return "an element name";
-    case Lexer::AXIS: case Lexer::LETTER_C: return "an axis";
-    case Lexer::STRING: return "a text in quotation marks";
-    case Lexer::VAR: case Lexer::LETTER_M: return "a variable";
+    case T::NUMBER: return "a number";
+    case T::NAME: return "a name";
+    case T::MEMBER: return "an element name";
+    case T::AXIS: case T::LETTER_C: return "an axis";
+    case T::STRING: return "a text in quotation marks";
+    case T::VAR: case T::LETTER_M: return "a variable";
     case antlr4::Token::EOF: return "the end of the file";
     default: return "'" + lower(vocabulary.getSymbolicName(type)) + "'";
   }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <PowerPmacLexer.h>
+#include <PowerPmacParser.h>
 
 #include <memory>
 #include <set>
@@ -38,9 +39,9 @@ class WordLexer : public grammar::PowerPmacLexer {
   std::size_t axis_definition_type(std::string_view run) const;
   Word split_commands(std::string_view word, std::size_t begin) const;
   void declare(std::string_view name);
-  void follow(std::size_t type, std::size_t line);
-  void follow_declaration(std::size_t type, std::size_t line);
-  void follow_mode(std::size_t type, std::size_t line);
+  void follow(std::size_t kind, std::size_t line);
+  void follow_declaration(std::size_t kind, std::size_t line);
+  void follow_mode(std::size_t kind, std::size_t line);
 
   enum class Declaring { kNothing, kGlobal, kLocal, kParameters };
 
@@ -65,5 +66,7 @@ class WordLexer : public grammar::PowerPmacLexer {
 const std::vector<std::string_view>& keyword_names();
 /// Name of a token type as the user writes it: 'while', ')', a number, a name.
 std::string describe_token(std::size_t type);
+/// Name of a token type in the grammar, or empty for operators.
+std::string token_name(std::size_t type);
 
 }  // namespace pmac::compiler::power_pmac
