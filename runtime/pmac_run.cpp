@@ -142,6 +142,10 @@ int main(int argc, char** argv) {
   try {
     RunOptions options;
     if (const auto code = parse_options(argc, argv, options)) return *code;
+    if (const std::string file = unknown_ending(options); !file.empty()) {
+      std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
+      return kExitUsage;
+    }
     catch_signals();
     return run(options);
   } catch (const std::exception& e) {

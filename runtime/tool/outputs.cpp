@@ -1,5 +1,6 @@
 #include "runtime/tool/outputs.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -11,7 +12,7 @@ std::string unknown_ending(const RunOptions& options) {
   for (const std::string& file : {options.record, options.gather})
     if (!file.empty() && !runtime::table_format_of(file)) return file;
   for (const std::string& file : options.plots)
-    if (!runtime::picture_format_of(file)) return file;
+    if (!runtime::plot_format_of(file)) return file;
   return {};
 }
 
@@ -69,22 +70,29 @@ bool Outputs::finish() {
     if (gather_ && !failed_) gather_->finish();
     if (!options_.gather.empty() && !gather_ && !failed_)
       std::fprintf(stderr, "pmac-run: nothing was gathered, %s is not written; set Gather.Enable = 2 in the program\n", options_.gather.c_str());
-    if (!options_.plots.empty() && !failed_ && !draw()) return false;
+    if (!options_.plots.empty() && !failed_) draw();
   } catch (const std::exception& e) {
     fail(e.what());
   }
   return !failed_;
 }
 
-bool Outputs::draw() {
+/// Curves of the picture: the axes; the motors where no axis is defined. The path panel shows the first two axes.
+void Outputs::draw() {
   runtime::PlotData data;
-  for (std::size_t c = 0; c < plot_columns_.size(); ++c) data.columns.push_back({plot_columns_[c], std::move(plot_values_[c])});
-  for (const std::string& file : options_.plots)
-    if (const std::string problem = runtime::draw(data, file); !problem.empty()) {
-      fail(problem);
-      return false;
-    }
-  return true;
+  const auto is_motor = [](const std::string& name) { return name.starts_with("Motor["); };
+  const bool axes = std::any_of(plot_columns_.begin() + 1, plot_columns_.end(), [&](const auto& name) { return !is_motor(name); });
+  data.length_unit = axes ? "" : "motor units";
+  data.time_s = std::move(plot_values_[0]);
+  for (std::size_t c = 1; c < plot_columns_.size(); ++c)
+    if (is_motor(plot_columns_[c]) != axes) data.curves.push_back({plot_columns_[c], std::move(plot_values_[c])});
+  const auto index_of = [&](const char* name) {
+    const auto at = std::find_if(data.curves.begin(), data.curves.end(), [&](const auto& curve) { return curve.name == name; });
+    return static_cast<std::size_t>(at - data.curves.begin());
+  };
+  if (axes && index_of("X") < data.curves.size() && index_of("Y") < data.curves.size()) data.path = {index_of("X"), index_of("Y")};
+  else if (axes && data.curves.size() >= 2) data.path = {0, 1};
+  for (const std::string& file : options_.plots) runtime::draw(data, *runtime::plot_format_of(file), file);
 }
 
 }  // namespace pmac::tool

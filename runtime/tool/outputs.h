@@ -24,7 +24,7 @@ class Outputs {
   void gather(runtime::Machine& machine);
   void keep_for_plots(Recorder& recorder);
   void fail(const std::string& message);
-  bool draw();
+  void draw();
 
   const RunOptions& options_;
   std::unique_ptr<runtime::TableWriter> record_, gather_;
