@@ -108,6 +108,7 @@ std::unique_ptr<antlr4::Token> WordLexer::nextToken() {
       static_cast<antlr4::CommonToken*>(next.get())->setStopIndex(begin + word.length - 1);
       setCharPositionInLine(next->getCharPositionInLine() + word.length);
       _input->seek(begin + word.length);
+      hitEOF = false;  // the word may have reached the end of the text; its rest is still to be read
     }
     if (kind == T::NAME) declare(text_.substr(begin, word.length));
   }
