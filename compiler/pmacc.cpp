@@ -30,6 +30,7 @@ constexpr const char* kExamples = R"(Examples:
 struct Arguments {
   std::vector<std::string> files, include_dirs, defines, warnings;
   std::string output, emit, format = "text", color = "auto", explain;
+  std::size_t error_limit = 100;
   bool check = false;
 };
 
@@ -123,6 +124,7 @@ int run(const Arguments& arguments) {
   for (const std::string& name : arguments.files) files.push_back({name == "-" ? "<stdin>" : name, read_file(name)});
   compiler::Session session(options_of(arguments));
   const bool warnings_are_errors = std::find(arguments.warnings.begin(), arguments.warnings.end(), "error") != arguments.warnings.end();
+  session.diagnostics().set_error_limit(arguments.error_limit);
   session.diagnostics().set_warnings_are_errors(warnings_are_errors);
   if (!arguments.emit.empty()) return emit(session, arguments, files);
   const auto module = session.compile(files);
@@ -141,6 +143,7 @@ void declare_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--emit", arguments.emit, "print one stage instead of compiling")->check(CLI::IsMember({"tokens", "tree", "ir", "bytecode", "symbols", "elements"}))->type_name("STAGE");
   app.add_option("--diagnostics-format", arguments.format, "text or json, on standard error")->check(CLI::IsMember({"text", "json"}))->type_name("FORMAT");
   app.add_option("--color", arguments.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
+  app.add_option("--error-limit", arguments.error_limit, "stop reporting after this many errors")->type_name("COUNT");
   app.add_option("--explain", arguments.explain, "say more about the message of this code")->type_name("CODE");
   app.set_version_flag("--version", "pmacc 0.1.0");
   app.footer(kExamples);

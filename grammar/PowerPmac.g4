@@ -66,7 +66,7 @@ tokens {
   DEFAULT, DELAY, DO, DREAD, DWELL, ELSE, FRAX, FRAX2, FREAD, GOSUB, GOTO, IF, INC, LINEAR, NOFRAX, NOFRAX2, NORMAL, PCLR, PLOAD,
   PREAD, PSET, PSTORE, PVT, RAPID, READ, RETURN, SPLINE, STOP, SWITCH, TA, TD, TM, TREAD, TS, TSD, TSEL, VREAD, WHILE,
   // keywords of on-line commands; COMMAND is one that takes no argument (r, run, q, hm, ...)
-  COMMAND, ON_B, ON_J, ON_OUT, CX, DEFINE, DELETE, LOOKAHEAD, ECHO, OTHER_COMMAND
+  COMMAND, ON_B, ON_J, ON_OUT, CLEAR, CX, DEFINE, DELETE, LOOKAHEAD, ECHO, OTHER_COMMAND
 }
 
 // --- a load stream --------------------------------------------------------------------------------------------------------
@@ -254,6 +254,7 @@ online
   | CLOSE
   | DEFINE LOOKAHEAD NUMBER (',' NUMBER)?
   | DELETE LOOKAHEAD
+  | CLEAR ({sameLine()}? kind=(PROG | PLC | SUBPROG) bufferName)?
   | CX ({sameLine()}? (statement | ';'))*
   | COMMAND
   | ON_B ({sameLine()}? programName)?

@@ -28,7 +28,14 @@ std::int32_t Tables::string(const std::string& text) {
   return at->second;
 }
 
-std::int32_t Tables::element(const bytecode::ElementRef& ref) { return index_in(module_.element_refs, ref); }
+std::int32_t Tables::element(const bytecode::ElementRef& ref) {
+  std::string key = std::to_string(static_cast<int>(ref.id)) + (ref.address ? "a" : "");
+  for (const auto& index : ref.index) key += (index.is_register ? "r" : "i") + std::to_string(index.value);
+  const auto [at, fresh] = elements_.emplace(std::move(key), static_cast<std::int32_t>(module_.element_refs.size()));
+  if (fresh) module_.element_refs.push_back(ref);
+  return at->second;
+}
+
 std::int32_t Tables::sync_target(const bytecode::SyncTarget& target) { return index_in(module_.sync_targets, target); }
 std::int32_t Tables::call_target(const bytecode::CallTarget& target) { return index_in(module_.call_targets, target); }
 

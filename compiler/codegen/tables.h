@@ -27,7 +27,7 @@ class Tables {
   bytecode::Module& module_;
   const source::SourceManager& sources_;
   std::unordered_map<std::uint64_t, std::int32_t> constants_;  // by bits: 0.0 and -0.0 differ
-  std::map<std::string, std::int32_t> strings_;
+  std::map<std::string, std::int32_t> strings_, elements_;
   std::map<std::int32_t, std::int32_t> files_;                  // of the source manager -> of the module
 };
 

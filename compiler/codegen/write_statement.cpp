@@ -87,7 +87,14 @@ void ProgramWriter::assign_list(const ir::Assign& node) {
   }
 }
 
+/// Sema has warned: a load stream that sets what the machine itself reports.
+static bool is_left_out(const ir::Expr& target) {
+  const auto* element = std::get_if<ir::Element>(&target.node);
+  return element && bytecode::element_info(element->element).access == bytecode::ElementAccess::kStatus;
+}
+
 void ProgramWriter::write(const ir::Assign& node, const source::Span&) {
+  if (is_left_out(*node.target)) return;
   if (node.synchronous) assign_synchronously(node);
   else if (node.values.size() > 1) assign_list(node);
   else assign(*node.target, node.op, *node.values.front());

@@ -91,6 +91,7 @@ void Binder::bind_target(ir::Expr& expr) {
   const auto* element = std::get_if<ir::Element>(&expr.node);
   if (element && element->element == bytecode::ElementId::kCount) return;  // reported
   if (element && element->address) diagnostics_.error("PM3042", expr.span, "the address of an element cannot be assigned");
+  else if (element && !buffer_ && !settings_.online) diagnostics_.warning("PM6011", expr.span, fmt::format("{} is a status element here; this assignment is left out", bytecode::element_info(element->element).name));
   else if (element) diagnostics_.error("PM3043", expr.span, fmt::format("{} is a status element; it can only be read", bytecode::element_info(element->element).name));
   else if (!std::holds_alternative<ir::NameUse>(expr.node)) diagnostics_.error("PM3044", expr.span, "this cannot be assigned");
 }
@@ -231,6 +232,7 @@ void Binder::report_unknown_element(const ir::Element& element, const source::Sp
     diagnostics_.error("PM3052", span, fmt::format("'{}' is an array; its index stands in round brackets: {}(...)", structure, structure));
     return;
   }
+  if (!project_.reported_elements.insert(lower(element.pattern)).second) return;
   std::vector<std::string_view> candidates;
   for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) candidates.push_back(bytecode::element_info(static_cast<bytecode::ElementId>(i)).name);
   const std::string_view near = source::nearest_word(element.pattern, candidates);

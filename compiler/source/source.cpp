@@ -50,8 +50,7 @@ std::string_view SourceManager::text(const Span& span) const {
 
 Diagnostic& Diagnostics::report(Diagnostic diagnostic) {
   if (warnings_are_errors_ && diagnostic.severity == Severity::kWarning) diagnostic.severity = Severity::kError;
-  const auto is_same = [&](const Diagnostic& other) { return other.span == diagnostic.span && other.code == diagnostic.code && other.message == diagnostic.message; };
-  const bool repeated = diagnostic.span.valid() && std::any_of(all_.begin(), all_.end(), is_same);
+  const bool repeated = diagnostic.span.valid() && !seen_.insert({diagnostic.span.file, diagnostic.span.begin, diagnostic.code + diagnostic.message}).second;
   const bool is_error = diagnostic.severity == Severity::kError;
   const bool over_limit = is_error && error_count_ >= error_limit_;
   if (repeated || over_limit) {
@@ -76,6 +75,7 @@ Diagnostic& Diagnostics::warning(std::string code, Span span, std::string messag
 std::vector<Diagnostic> Diagnostics::take() {
   std::vector<Diagnostic> taken(std::make_move_iterator(all_.begin()), std::make_move_iterator(all_.end()));
   all_.clear();
+  seen_.clear();
   error_count_ = warning_count_ = dropped_count_ = 0;
   return taken;
 }

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace pmac::source {
@@ -96,6 +98,7 @@ class Diagnostics {
 
  private:
   std::deque<Diagnostic> all_;
+  std::set<std::tuple<std::int32_t, std::uint32_t, std::string>> seen_;  // file, offset, code and message
   Diagnostic ignored_;
   std::size_t error_count_ = 0;
   std::size_t warning_count_ = 0;

@@ -22,7 +22,8 @@ ir::Unit Lowering::lower_file(P::FileContext* file) {
       lower_buffer(buffer, unit);
     } else if (auto* online = dynamic_cast<P::OnlineContext*>(child)) {
       online_ = true;
-      lower_online(online, unit.load);
+      if (online->CLEAR()) lower_clear(online, unit);
+      else lower_online(online, unit.load);
     }
   }
   return unit;
@@ -71,6 +72,18 @@ void Lowering::lower_buffer(P::BufferContext* context, ir::Unit& unit) {
   }
   const bool header_is_broken = !context->openHeader() || context->openHeader()->exception;
   if (header_is_broken) return;
+  unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
+  unit.buffers.push_back(std::move(buffer));
+}
+
+/// clear prog 5 makes the buffer empty, like open prog 5 close.
+void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
+  if (online->exception || !online->kind || !online->bufferName()) return;
+  ir::Buffer buffer;
+  buffer.span = buffer.close_span = span_of(online);
+  buffer.kind = online->kind->getType() == P::PLC ? ProgramKind::kPlc : online->kind->getType() == P::SUBPROG ? ProgramKind::kSubprog : ProgramKind::kProg;
+  if (online->bufferName()->NAME()) buffer.name = text_of(token_of(online->bufferName()->NAME()));
+  else buffer.number = whole_number(token_of(online->bufferName()->NUMBER()), buffer.kind == ProgramKind::kPlc ? bytecode::kMaxPlcs - 1 : 4294967295).value_or(0);
   unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
   unit.buffers.push_back(std::move(buffer));
 }
@@ -134,6 +147,12 @@ void Lowering::lower_address(P::OnlineContext* online, ir::Body& out) {
   auto& list = coord ? coord_list_ : motor_list_;
   list.clear();
   if (!online->numberList()) return not_supported(span, "asking for the addressed motor or coordinate system");
+  const auto items = online->numberList()->numberItem();
+  const bool all = items.size() == 1 && items[0]->STAR();
+  if (all) {
+    for (std::int64_t n = 1; n < (coord ? bytecode::kMaxCoords : bytecode::kMaxMotors); ++n) list.push_back(n);
+    return;
+  }
   std::vector<std::int64_t> numbers;
   for (ir::ExprPtr& number : lower_number_list(online->numberList())) {
     const auto value = number ? ir::constant_value(*number) : std::nullopt;

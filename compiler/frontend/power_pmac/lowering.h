@@ -71,6 +71,7 @@ class Lowering {
 
   // the load stream (lower_online.cpp)
   void lower_buffer(P::BufferContext* buffer, ir::Unit& unit);
+  void lower_clear(P::OnlineContext* online, ir::Unit& unit);
   void lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffer);
   std::vector<ir::Parameter> lower_parameters(P::ParametersContext* parameters);
   void lower_online(P::OnlineContext* online, ir::Body& out);

@@ -44,9 +44,9 @@ Table make_online_keywords() {
   add_keywords(table, T::OPEN, T::STEP);
   table.erase("local");
   for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save"}) table[word] = T::COMMAND;
-  for (const char* word : {"fsave", "reboot", "vers", "type", "cpu", "cid", "size", "buffer", "list", "clear", "undefine", "date", "time", "system", "free", "dir"})
+  for (const char* word : {"fsave", "reboot", "vers", "type", "cpu", "cid", "size", "buffer", "list", "undefine", "date", "time", "system", "free", "dir"})
     table[word] = T::OTHER_COMMAND;
-  table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"cx", T::CX}, {"define", T::DEFINE},
+  table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"clear", T::CLEAR}, {"cx", T::CX}, {"define", T::DEFINE},
                 {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}});
   return table;
 }
