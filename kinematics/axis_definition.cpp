@@ -50,10 +50,8 @@ void AxisMap::solve() {
   rows_ = deciding_rows(definitions_);
   for (int axis = 0; axis < kAxisCount; ++axis)
     if (linear_axes_ >> axis & 1u) axes_.push_back(axis);
-  if (axes_.empty()) {
-    solvable_ = true;
-    return;
-  }
+  if (axes_.empty()) return;
+  solvable_ = false;
   if (rows_.size() < axes_.size()) {
     reason_ = "fewer independent motors than axes";
     return;

@@ -52,7 +52,7 @@ class AxisMap {
   void solve();
   std::vector<MotorDefinition> definitions_;
   std::uint32_t linear_axes_ = 0;
-  bool solvable_ = false;
+  bool solvable_ = true;                 // nothing defined: nothing to solve
   std::string reason_;
   std::vector<int> axes_;                // column -> axis index
   std::vector<int> rows_;                // row -> definition index of the motors that decide

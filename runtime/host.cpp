@@ -224,6 +224,8 @@ void MachineHost::define_axis(Thread& thread, const bytecode::AxisDefinition& de
 }
 
 void MachineHost::define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition) {
+  if (const std::string reason = refusal_of(definition); !reason.empty())
+    return s_.refuse(fmt::format("M{}->", definition.first_m), "error #21: ILLEGAL PARAMETER: " + reason);
   ElementAddress element;
   if (definition.kind == PointerKind::kElement) {
     const bytecode::ElementRef& ref = module.element_refs[definition.element];

@@ -183,4 +183,13 @@ bool Machine::axes_from_motors(int coord, std::span<const double> motor_mu, moti
   return state_->coord(coord).axes_from_motors(motor_mu, axis_uu);
 }
 
+std::optional<Fault> Machine::motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu) {
+  CoordSystem& c = state_->coord(coord);
+  const std::vector<int> motors = c.served_motors();
+  std::vector<double> positions(motors.size());
+  if (auto fault = c.motors_from_axes(axis_uu, positions.data(), {})) return fault;
+  for (std::size_t i = 0; i < motors.size(); ++i) motor_mu[static_cast<std::size_t>(motors[i])] = positions[i];
+  return std::nullopt;
+}
+
 }  // namespace pmac::runtime

@@ -132,6 +132,8 @@ class Machine {
   /// (the forward map). False where the forward routine has no solution.
   std::uint32_t axes_of(int coord) const;
   bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu);
+  /// Motor positions of an axis position, into motor_mu by motor number; the fault where there is none.
+  std::optional<Fault> motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu);
 
   struct State;
 

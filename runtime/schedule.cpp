@@ -69,11 +69,16 @@ double Machine::State::next_event_ms(double limit_ms) {
 }
 
 void Machine::State::sample_to(double time_ms) {
-  std::vector<int> used;
+  if (tick_ms(tick + 1) > time_ms) return;
+  std::vector<int>& used = block_motors;
+  used.clear();
   for (const Motor& m : motors)
     if (m.in_use) used.push_back(m.number);
   const bool single = gather.enabled() && gather.needs_single_ticks();
-  std::vector<double> rows(used.size() * kBlockTicks), path(bytecode::kMaxMotors * kBlockTicks);
+  std::vector<double>& rows = block_rows;
+  std::vector<double>& path = block_path;
+  rows.resize(bytecode::kMaxMotors * kBlockTicks);
+  path.resize(bytecode::kMaxMotors * kBlockTicks);
   while (tick_ms(tick + 1) <= time_ms) {
     int count = 1;
     while (!single && count < kBlockTicks && tick_ms(tick + 1 + count) <= time_ms) ++count;

@@ -64,6 +64,8 @@ struct Machine::State {
   std::deque<QueuedCommand> queued;
   std::map<int, Addresses> command_addresses;        // by sender_key()
   std::vector<SampleSink*> sinks;
+  std::vector<int> block_motors;                     // of sample_to(), kept so that a block costs no allocation
+  std::vector<double> block_rows, block_path;
 
   // bookkeeping
   std::uint64_t instructions = 0;

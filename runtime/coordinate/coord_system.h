@@ -79,6 +79,9 @@ class CoordSystem {
   /// pmatch: axis positions from the motors' commanded positions. Answers a refusal or empty.
   std::string match_positions(double time_ms);
   bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu);
+  /// Positions of served_motors(), through the inverse routine where there is one.
+  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
+  std::vector<int> served_motors() { return motor_map().motors; }
   std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
   const AxisVector& calculated_position() const { return calculated_uu_; }
   AxisVector commanded_position(double time_ms);
@@ -102,7 +105,7 @@ class CoordSystem {
   void ensure_sequence(double time_ms);
   void start_dwell(double time_ms);
   void start_rapid(double time_ms);
-  void collect_timings(double time_ms);
+  void collect_timings();
   void perform_due(double time_ms);
   void perform_up_to(std::uint64_t move_id);
   void record(const MoveRecord& move);
@@ -111,7 +114,6 @@ class CoordSystem {
 
   // positions.cpp
   std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
-  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
   std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu);
 
   Machine::State& machine_;
@@ -146,8 +148,8 @@ class CoordSystem {
   std::deque<PendingMove> pending_moves_;
   std::vector<motion::MoveTiming> timings_;
   std::deque<SyncEntry> sync_;
-  struct DueAssignment { std::uint64_t id; double time_ms; };
-  std::deque<DueAssignment> due_;
+  std::vector<motion::SyncTime> sync_times_;
+  std::deque<motion::SyncTime> due_;   // ascending
 };
 
 }  // namespace pmac::runtime

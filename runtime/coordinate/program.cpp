@@ -105,7 +105,7 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   calculated_uu_ = pipeline_.calculated_position();
   const bool delay = command.kind == motion::CommandKind::kDelay;
   pending_moves_.push_back({command.id, delay ? "delay" : move_mode_name(modal.mode), command.source});
-  collect_timings(machine_.now_ms);
+  collect_timings();
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
   resume_ms_ = machine_.next_rti_ms(machine_.now_ms);
   return Flow::kSuspend;
@@ -190,7 +190,7 @@ void CoordSystem::service(double time_ms) {
 void CoordSystem::calculate(double time_ms) {
   phase_ = Phase::kCalculating;
   if (on_path_) {
-    collect_timings(time_ms);
+    collect_timings();
     if (enough_ahead(time_ms)) {
       resume_ms_ = machine_.next_rti_ms(time_ms);
       return;
@@ -221,7 +221,7 @@ void CoordSystem::calculate(double time_ms) {
 std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
   if (on_path_) {
     if (auto fault = pipeline_.end_sequence()) return fault;
-    collect_timings(time_ms);
+    collect_timings();
   } else if (then == AfterRest::kNextInterrupt) {
     phase_ = Phase::kCalculating;
     resume_ms_ = machine_.next_rti_ms(time_ms);
@@ -249,7 +249,7 @@ void CoordSystem::at_rest(double time_ms) {
 
 void CoordSystem::settle_path(double time_ms) {
   if (!on_path_) return;
-  collect_timings(time_ms);
+  collect_timings();
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
   pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
@@ -320,11 +320,13 @@ void CoordSystem::record(const MoveRecord& move) {
   if (machine_.options.observers.move) machine_.options.observers.move(move);
 }
 
-void CoordSystem::collect_timings(double) {
+void CoordSystem::collect_timings() {
   timings_.clear();
   pipeline_.take_timings(timings_);
+  sync_times_.clear();
+  pipeline_.take_sync_times(sync_times_);
+  due_.insert(due_.end(), sync_times_.begin(), sync_times_.end());
   for (const motion::MoveTiming& timing : timings_) {
-    due_.push_back({timing.id, timing.sync_ms});
     while (!pending_moves_.empty() && pending_moves_.front().id <= timing.id) {
       const PendingMove& move = pending_moves_.front();
       if (move.id == timing.id)

@@ -10,8 +10,8 @@
 //      +---------------------- s
 //       committed | window
 //
-// Motion stops (x = 0) where a velocity steps: at the ends of a sequence without ramps and at corners that are not blended. Where
-// the program itself rests, x is free. Method: Pham and Pham, "A new approach to time-optimal path parameterization based on
+// Motion stops (x = 0) where the direction changes at once: at corners that are not blended, and at the ends of a sequence
+// without ramps. A step in speed alone is taken up by x. Where the program itself rests, x is free. Method: Pham and Pham, "A new approach to time-optimal path parameterization based on
 // reachability analysis" (2018).
 #pragma once
 
@@ -40,14 +40,17 @@ class Lookahead {
  private:
   struct Interval {
     Segment segment;
+    double scale;               // x counts in units of 1/scale^2
     RateLimits limits;
     double start_bound = 1;     // of x at its start: limits of both neighbours, 0 where motion has to stop
     double beta = 0;            // of x at its start
   };
+  double scale_of(const Segment& segment) const;
   void split_last();
   void backward(double end_beta);
   void commit(int count, double end_beta, std::vector<TimedSegment>& out);
-  double start_bound(const Segment& segment, const RateLimits& limits) const;
+  bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
+  double start_bound(const RateLimits& limits, double scale) const;
 
   std::vector<MotorLimits> limits_;
   int window_, chunk_;

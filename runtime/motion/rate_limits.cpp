@@ -11,6 +11,12 @@ constexpr double kSameVelocity = 1e-6;
 /// Speeds below this fraction of the fastest in the segment are rest.
 constexpr double kRest = 1e-9;
 
+/// x0 may lie on the border of what is possible, and beyond it by rounding; a row that hardly depends on x1 must not make
+/// a small x1 of that.
+constexpr double kRoundingRoom = 1e-6;
+/// Borders whose directions differ by less are parallel: where they cross is all rounding.
+constexpr double kParallel = 1e-10;
+
 double largest_speed(const MotorCubic& q, double h) {
   double speed = std::max(std::abs(q.c1), std::abs(q.velocity(h)));
   const double extreme = q.c3 == 0 ? -1 : -q.c2 / (3 * q.c3);
@@ -42,11 +48,12 @@ Point best_on_line(const HalfPlane& line, const std::vector<HalfPlane>& planes, 
   for (std::size_t i = 0; i < count; ++i) {
     const double slope = planes[i].a0 * way.x0 + planes[i].a1 * way.x1;
     const double room = planes[i].bound - planes[i].a0 * base.x0 - planes[i].a1 * base.x1;
-    if (slope > 0) high = std::min(high, room / slope);
-    if (slope < 0) low = std::max(low, room / slope);
+    const double parallel = kParallel * (std::abs(planes[i].a0 * way.x0) + std::abs(planes[i].a1 * way.x1));
+    if (slope > parallel) high = std::min(high, room / slope);
+    if (slope < -parallel) low = std::max(low, room / slope);
   }
-  const double chosen = high < low ? low : high;
-  return {base.x0 + chosen * way.x0, base.x1 + chosen * way.x1};
+  const double t = std::max(low, high);
+  return {base.x0 + t * way.x0, base.x1 + t * way.x1};
 }
 
 }  // namespace
@@ -69,34 +76,50 @@ double RateLimits::largest_start(double x0_max, double x1_max) const {
 }
 
 double RateLimits::largest_end(double x0, double x1_max) const {
+  constexpr double kFull = 1 + kRoundingRoom;
   double x1 = x1_max;
   for (const RateRow& row : rows) {
     const double used = row.start * x0;
-    if (row.end > 0) x1 = std::min(x1, (1 - used) / row.end);
-    if (row.end < 0) x1 = std::min(x1, (-1 - used) / row.end);
+    if (row.end > 0) x1 = std::min(x1, (kFull - used) / row.end);
+    if (row.end < 0) x1 = std::min(x1, (-kFull - used) / row.end);
   }
   return std::max(0.0, x1);
 }
 
-RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits) {
+bool RateLimits::allows(double x0, double x1) const {
+  if (std::max(x0, x1) > max_rate2) return false;
+  return std::all_of(rows.begin(), rows.end(),
+                     [&](const RateRow& row) { return std::abs(row.start * x0 + row.end * x1) <= 1 + 2 * kRoundingRoom; });
+}
+
+RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double scale) {
   RateLimits result;
+  const double unit = 1 / (scale * scale);
+  result.max_rate2 = scale * scale;
   for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
     const MotorCubic& q = segment.motor[m];
-    if (limits[m].inv_amax_ms2_mu > 0) add_acceleration_rows(q, segment.duration_ms, limits[m].inv_amax_ms2_mu, result.rows);
-    const double speed = largest_speed(q, segment.duration_ms), allowed = limits[m].max_speed_mu_ms;
-    if (allowed > 0 && speed > allowed) result.max_rate2 = std::min(result.max_rate2, (allowed / speed) * (allowed / speed));
+    const double inv_accel = limits[m].inv_amax_ms2_mu * unit, allowed = limits[m].max_speed_mu_ms;
+    if (inv_accel > 0) add_acceleration_rows(q, segment.duration_ms, inv_accel, result.rows);
+    const double speed = largest_speed(q, segment.duration_ms) / scale;
+    if (allowed > 0) result.max_rate2 = std::min(result.max_rate2, (allowed / speed) * (allowed / speed));
   }
   return result;
 }
 
-bool velocity_steps(const Segment& before, const Segment& after) {
-  double fastest = 0, difference = 0;
+double speed_ratio(const Segment& before, const Segment& after) {
+  double before2 = 0, after2 = 0, product = 0, difference2 = 0;
   for (std::size_t m = 0; m < before.motor.size(); ++m) {
     const double v0 = before.motor[m].velocity(before.duration_ms), v1 = after.motor[m].c1;
-    fastest = std::max({fastest, std::abs(v0), std::abs(v1), largest_speed(before.motor[m], before.duration_ms) * kRest});
-    difference = std::max(difference, std::abs(v1 - v0));
+    before2 += v0 * v0;
+    after2 += v1 * v1;
+    product += v0 * v1;
+    difference2 += (v1 - v0) * (v1 - v0);
   }
-  return difference > kSameVelocity * fastest;
+  const double rounding2 = kSameVelocity * kSameVelocity * std::max(before2, after2);
+  if (difference2 <= rounding2 || (!is_moving(before, true) && !is_moving(after, false))) return 1;
+  if (!is_moving(before, true) || !is_moving(after, false)) return 0;
+  const bool same_direction = product > 0 && before2 * after2 - product * product <= kSameVelocity * kSameVelocity * before2 * after2;
+  return same_direction ? std::sqrt(after2 / before2) : 0;
 }
 
 bool is_moving(const Segment& segment, bool at_end) {

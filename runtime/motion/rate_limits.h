@@ -24,12 +24,16 @@ struct RateLimits {
   double largest_start(double x0_max, double x1_max) const;
   /// Largest x1 <= x1_max that goes with x0.
   double largest_end(double x0, double x1_max) const;
+  /// Both ends are within all limits.
+  bool allows(double x0, double x1) const;
 };
 
-RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits);
+/// scale: x is counted in units of 1/scale^2, so that it is the same on both sides of a step in speed.
+RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double scale);
 
-/// Velocities of the two segments differ where they meet by more than rounding: no motion can go through without stopping.
-bool velocity_steps(const Segment& before, const Segment& after);
+/// Ratio of the speeds of two segments where they meet (after to before): 1 where they agree, 0 where the direction changes or
+/// one of them rests, so that motion cannot go through without stopping.
+double speed_ratio(const Segment& before, const Segment& after);
 /// The motors do not stand still at the start (at_end false) or end of the segment at full rate.
 bool is_moving(const Segment& segment, bool at_end);
 

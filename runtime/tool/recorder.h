@@ -32,6 +32,9 @@ class Recorder : public runtime::SampleSink {
   /// Hands over what is held. Call once at the end of the run.
   void finish();
 
+  /// Values of a row; valid from the first begin().
+  std::size_t width() const { return 1 + motors_.size() + axes_.size(); }
+
   /// Motors that moved for the first time when the columns were fixed already.
   const std::vector<int>& late_motors() const { return late_motors_; }
 
