@@ -10,7 +10,7 @@
 #include "compiler/bytecode/operators.h"
 #include "runtime/interpreter/fuse.h"
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(PMAC_SWITCH_DISPATCH)
 #define PMAC_COMPUTED_GOTO 1
 #pragma GCC diagnostic ignored "-Wpedantic"
 #else
