@@ -178,8 +178,8 @@ void InterpreterCore::dispatch() {
   } while (false)
   DISPATCH();
 #else
-#define OP(Name) case Opcode::k##Name
-#define FUSED_OP(Name) case static_cast<Opcode>(FusedOpcode::k##Name)
+#define OP(Name) case static_cast<unsigned>(Opcode::k##Name)
+#define FUSED_OP(Name) case static_cast<unsigned>(FusedOpcode::k##Name)
 #define DISPATCH() goto dispatch_next
 #define NEXT()  \
   do {          \
@@ -187,8 +187,7 @@ void InterpreterCore::dispatch() {
     DISPATCH(); \
   } while (false)
 dispatch_next:
-  switch (pc->op) {
-  case Opcode::kCount:
+  switch (static_cast<unsigned>(pc->op)) {
 #endif
 
   OP(Nop) : NEXT();
