@@ -160,9 +160,9 @@ void InterpreterCore::dispatch() {
 #define OPCODE(Name, text, format, meaning) &&body_##Name,
 #include "compiler/bytecode/opcode.def"
 #undef OPCODE
-#define FUSED2(A, B) &&body_##A##B,
-#define FUSED3(A, B, C) &&body_##A##B##C,
-#define FUSED4(A, B, C, D) &&body_##A##B##C##D,
+#define FUSED2(loads, A, B) &&body_##A##B,
+#define FUSED3(loads, A, B, C) &&body_##A##B##C,
+#define FUSED4(loads, A, B, C, D) &&body_##A##B##C##D,
 #include "runtime/interpreter/fused.def"
 #undef FUSED2
 #undef FUSED3
