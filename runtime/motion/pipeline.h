@@ -54,7 +54,8 @@ class Pipeline {
 
   /// How many commands are known beyond the one that executes at time_ms (0: none).
   int commands_ahead(double time_ms) const;
-  /// With lookahead: true while fewer than lookahead_segments segments are known beyond time_ms.
+  /// With lookahead: true while less is known beyond time_ms than lookahead_segments times the segment time, and a quarter.
+  /// Asked for the next tick, adding while it says so keeps horizon_ms() ahead of that tick.
   bool wants_more_segments(double time_ms) const;
 
   /// Everything added is complete and its motion ends at or before time_ms.

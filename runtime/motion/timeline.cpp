@@ -15,6 +15,7 @@ double end_of(const TimedSegment& segment) { return segment.start_ms + segment.d
 
 void Timeline::reset(std::vector<double> position_mu, double time_ms) {
   segments_.clear();
+  programmed_ms_.clear();
   cursor_ = 0;
   end_ms_ = sampled_ms_ = time_ms;
   rest_mu_ = std::move(position_mu);
@@ -23,17 +24,20 @@ void Timeline::reset(std::vector<double> position_mu, double time_ms) {
 void Timeline::push(TimedSegment segment) {
   end_ms_ = end_of(segment);
   for (std::size_t m = 0; m < rest_mu_.size(); ++m) rest_mu_[m] = segment.segment.motor[m].position(segment.segment.duration_ms);
+  programmed_ms_.push_back(programmed_end_ms_);
+  programmed_end_ms_ += segment.segment.duration_ms;
   segments_.push_back(std::move(segment));
 }
 
 void Timeline::prune() {
   segments_.erase(segments_.begin(), segments_.begin() + static_cast<std::ptrdiff_t>(cursor_));
+  programmed_ms_.erase(programmed_ms_.begin(), programmed_ms_.begin() + static_cast<std::ptrdiff_t>(cursor_));
   cursor_ = 0;
 }
 
-int Timeline::segments_after(double time_ms) const {
+double Timeline::programmed_after(double time_ms) const {
   const auto first = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return s.start_ms < time_ms; });
-  return static_cast<int>(segments_.end() - first);
+  return first == segments_.end() ? 0 : programmed_end_ms_ - programmed_ms_[static_cast<std::size_t>(first - segments_.begin())];
 }
 
 SourceLine Timeline::source_at(double time_ms) const {

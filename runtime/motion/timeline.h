@@ -24,8 +24,8 @@ class Timeline {
   double end_ms() const { return end_ms_; }
   double sampled_ms() const { return sampled_ms_; }
   const std::vector<double>& rest_mu() const { return rest_mu_; }
-  /// Segments that begin at or after time_ms.
-  int segments_after(double time_ms) const;
+  /// Programmed time of the segments that begin at or after time_ms.
+  double programmed_after(double time_ms) const;
   SourceLine source_at(double time_ms) const;
 
   /// See Pipeline::sample().
@@ -37,6 +37,8 @@ class Timeline {
   void sample_rest(int first, int last, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
 
   std::deque<TimedSegment> segments_;
+  std::deque<double> programmed_ms_;  // [segment] programmed time of all segments before it
+  double programmed_end_ms_ = 0;
   std::size_t cursor_ = 0;          // first segment that ends after the last sample
   double end_ms_ = 0;
   double sampled_ms_ = 0;
