@@ -8,6 +8,8 @@ namespace {
 
 /// Shorter parts of a segment are not worth a node.
 constexpr double kMinPart_ms = 0.01;
+/// x that could be reached at the end of a segment to x that may: where they are nearer there is nothing to gain within it.
+constexpr double kWorthwhileRise = 1.02;
 
 /// Part of a segment from `from` on, `duration` long.
 Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
@@ -116,7 +118,8 @@ void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta * ratio2;
   const double next = interval.limits.largest_end(rate2_, std::min(next_beta, interval.limits.max_rate2));
   const bool meets_beta = next == next_beta && rate2_ < interval.beta;
-  const bool done = meets_beta && emit_with_switch(interval, rate2_, next, out);
+  const bool worthwhile = meets_beta && interval.limits.largest_end(rate2_, interval.limits.max_rate2) > kWorthwhileRise * next;
+  const bool done = worthwhile && emit_with_switch(interval, rate2_, next, out);
   if (!done) out.push_back(timed(std::move(interval.segment), rate2_, next));
   rate2_ = next / ratio2;
 }
