@@ -40,7 +40,9 @@ class Pipeline {
   void observe(StageObservers observers);
 
   /// Hop 5: the next command. The fault is the command's own (no circle, non-finite target, ...); the pipeline then stands
-  /// as before the call. Faults of later stages (kinematics of a segment) come out of add(), end_sequence() or plan_until().
+  /// as before the call. Faults of later stages (kinematics of a segment) come out of add() or end_sequence(); nothing more is
+  /// then produced until reset(). With lookahead the motion comes to rest on the path before the place that failed; without, it
+  /// ends at horizon_ms() with the velocity that sample() gives there.
   [[nodiscard]] std::optional<runtime::Fault> add(const MotionCommand& command);
 
   /// The last command added comes to rest with its td and tsd; what follows is a new sequence. Harmless when at rest.

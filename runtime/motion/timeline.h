@@ -14,7 +14,7 @@ class Timeline {
   /// Nothing but rest at position_mu.
   void reset(std::vector<double> position_mu, double time_ms);
   /// The motors stand here until the next segment (and from its start where that begins).
-  void set_rest(std::vector<double> position_mu) { rest_mu_ = std::move(position_mu); }
+  void set_rest(std::vector<double> position_mu);
 
   /// Starts at or after the end of the one before.
   void push(TimedSegment segment);
@@ -34,7 +34,7 @@ class Timeline {
  private:
   void sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
                       std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
-  void sample_rest(int first, int last, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
+  void sample_rest(double time_ms, int first, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
 
   std::deque<TimedSegment> segments_;
   std::deque<double> programmed_ms_;  // [segment] programmed time of all segments before it
@@ -43,6 +43,7 @@ class Timeline {
   double end_ms_ = 0;
   double sampled_ms_ = 0;
   std::vector<double> rest_mu_;     // after the last segment
+  std::vector<double> end_velocity_mu_ms_;  // at its end: not zero where the motion goes on in a segment to come
 };
 
 }  // namespace pmac::motion
