@@ -8,7 +8,6 @@
 //     print(session.diagnostics());
 #pragma once
 
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,8 +51,10 @@ class Session {
   source::Diagnostics& diagnostics();
   const source::SourceManager& sources() const;
 
- private:
   struct State;
+  State& state() { return *state_; }  // for the emit functions below
+
+ private:
   std::unique_ptr<State> state_;
 };
 

@@ -2,22 +2,21 @@
 
 namespace pmac::runtime {
 
-/// Numbers of Coord[].ErrorStatus (Power PMAC User's Manual; 255 is what the manual's own kinematic routines report).
 int error_status(FaultKind kind) {
   switch (kind) {
-    case FaultKind::kRunTime: return 16;
     case FaultKind::kSyncBuffer: return 1;
-    case FaultKind::kMoveType: return 8;
-    case FaultKind::kBadTarget: return 16;
-    case FaultKind::kCircleRadius: return 64;
-    case FaultKind::kInverseKinematics: return 255;
-    case FaultKind::kForwardKinematics: return 255;
-    case FaultKind::kNotReady: return 39;
+    case FaultKind::kMoveType: return 4;
     case FaultKind::kSoftLimit: return 32;
+    case FaultKind::kCircleRadius: return 64;
+    case FaultKind::kInverseKinematics:
+    case FaultKind::kForwardKinematics:
     case FaultKind::kUserStatus: return 255;
-    case FaultKind::kNotSimulated: return 16;
+    case FaultKind::kRunTime:
+    case FaultKind::kBadTarget:
+    case FaultKind::kNotReady:
+    case FaultKind::kNotSimulated: break;
   }
-  return 16;
+  return 16;  // run-time error; the controller has no number of its own for these
 }
 
 }  // namespace pmac::runtime

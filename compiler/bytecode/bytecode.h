@@ -266,6 +266,9 @@ std::string disassemble(const Module& module);
 /// Source of an instruction; SourceLine{} if the table has none.
 SourceLine source_of(const Program& program, std::uint32_t pc);
 
+/// The label of that number, or nullptr.
+const LabelEntry* find_label(const Program& program, std::int64_t number);
+
 /// "file:line" of a source line, or "<no source>".
 std::string to_string(const Module& module, SourceLine source);
 

@@ -88,13 +88,16 @@ class Thread {
 
   /// Stands at the top (or at label number `label`, if >= 0) of the program with all locals 0. False: no such label, then at the top.
   bool begin(ProgramHandle program, std::int64_t label = -1);
+  /// Stands at the top of top_program() again; locals keep their values (the next scan of a PLC). False: nothing was begun.
+  bool restart();
   /// Runs until something of RunStop happens. jump_back_limit: stop after this many backward jumps since the last call of
   /// reset_jump_backs(); <= 0: never.
   RunResult run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit);
 
   void reset_jump_backs() { jump_backs_ = 0; }
+  /// True from begin() until the program has ended or failed. Locals of the top frame stay readable after the end.
   bool active() const { return static_cast<bool>(program_); }
-  void stop() { program_ = {}; frames_.clear(); }
+  void stop() { program_ = {}; frames_.clear(); base_ = 0; }
 
   const ProgramHandle& program() const { return program_; }     // the buffer that executes now (a called subprogram too)
   const ProgramHandle& top_program() const { return top_; }      // the buffer that was begun
@@ -119,6 +122,8 @@ class Thread {
 
  private:
   friend class InterpreterCore;
+  bool stand_at_top(std::int64_t label);
+
   ProgramHandle program_, top_;
   std::vector<double> stack_;
   std::size_t base_ = 0;

@@ -217,5 +217,6 @@ SourceLine Pipeline::executing_source(double time_ms) const { return state_->tim
 const AxisVector& Pipeline::calculated_position() const { return state_->planner.position(); }
 
 void Pipeline::take_timings(std::vector<MoveTiming>& out) { state_->timings.take(out); }
+void Pipeline::take_sync_times(std::vector<SyncTime>& out) { state_->timings.take_sync_times(out); }
 
 }  // namespace pmac::motion

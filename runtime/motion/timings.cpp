@@ -102,11 +102,19 @@ void Timings::prune(double time_ms) {
 }
 
 void Timings::deliver() {
+  for (; sync_delivered_ < records_.size() && records_[sync_delivered_].sync.known; ++sync_delivered_)
+    sync_times_.push_back({records_[sync_delivered_].id, records_[sync_delivered_].sync.time_ms});
   while (!records_.empty() && records_.front().sync.known && records_.front().start.known && records_.front().end.known) {
     const Record& record = records_.front();
     finished_.push_back({record.id, record.sync.time_ms, record.start.time_ms, record.end.time_ms, record.length_uu});
     records_.pop_front();
+    --sync_delivered_;
   }
+}
+
+void Timings::take_sync_times(std::vector<SyncTime>& out) {
+  out.insert(out.end(), sync_times_.begin(), sync_times_.end());
+  sync_times_.clear();
 }
 
 void Timings::take(std::vector<MoveTiming>& out) {

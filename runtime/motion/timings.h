@@ -28,6 +28,7 @@ class Timings {
   /// Forgets what ahead() does not need for times from here on.
   void prune(double time_ms);
   void take(std::vector<MoveTiming>& out);
+  void take_sync_times(std::vector<SyncTime>& out);
 
  private:
   struct Place { double programmed_ms = 0, time_ms = 0; bool given = false, known = false; };
@@ -41,6 +42,8 @@ class Timings {
   std::deque<Record> records_;          // not yet delivered
   std::deque<double> starts_ms_;        // known, ascending
   int unknown_starts_ = 0;
+  std::size_t sync_delivered_ = 0;      // first records whose sync time has been handed on
+  std::vector<SyncTime> sync_times_;
   std::vector<MoveTiming> finished_;
   double covered_programmed_ms_ = 0, covered_ms_ = 0;
 };

@@ -1,0 +1,147 @@
+// The vocabulary of the bytecode: names and rows made from opcode.def, function.def and element.def, and the names of the
+// few enumerations that are written out in bytecode.h.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <unordered_map>
+
+#include "compiler/bytecode/bytecode.h"
+
+namespace pmac::bytecode {
+namespace {
+
+template <class Enum>
+constexpr std::size_t index_of(Enum value) {
+  return static_cast<std::size_t>(value);
+}
+
+constexpr std::size_t kOpcodeCount = index_of(Opcode::kCount);
+constexpr std::size_t kFunctionCount = index_of(Function::kCount);
+constexpr std::size_t kElementCount = index_of(ElementId::kCount);
+
+constexpr std::array<OpcodeInfo, kOpcodeCount> kOpcodes = {{
+#define OPCODE(Name, text, format, meaning) {text, OperandFormat::k##format, meaning},
+#include "compiler/bytecode/opcode.def"
+#undef OPCODE
+}};
+
+constexpr std::array<FunctionInfo, kFunctionCount> kFunctions = {{
+#define FUNCTION(Name, name, argument_count, meaning) {name, argument_count, meaning},
+#include "compiler/bytecode/function.def"
+#undef FUNCTION
+}};
+
+constexpr std::array<ElementInfo, kElementCount> kElements = {{
+#define ELEMENT(Id, name, count0, count1, count2, Type, default_value, unit, Access, Simulation, meaning) \
+  {name, {count0, count1, count2}, ElementType::k##Type, default_value, unit, ElementAccess::k##Access,   \
+   ElementSimulation::k##Simulation, meaning},
+#include "compiler/bytecode/element.def"
+#undef ELEMENT
+}};
+
+constexpr OpcodeInfo kUnknownOpcode = {"?", OperandFormat::kNone, "no such instruction"};
+constexpr FunctionInfo kUnknownFunction = {"?", 0, "no such function"};
+constexpr ElementInfo kUnknownElement = {
+    "?", {0, 0, 0}, ElementType::kDouble, 0, "", ElementAccess::kStatus, ElementSimulation::kStored, "no such element"};
+
+constexpr std::array<std::string_view, kAxisCount> kAxisNames = {
+    "A",  "B",  "C",  "U",  "V",  "W",  "X",  "Y",  "Z",  "AA", "BB", "CC", "DD", "EE", "FF", "GG",
+    "HH", "LL", "MM", "NN", "OO", "PP", "QQ", "RR", "SS", "TT", "UU", "VV", "WW", "XX", "YY", "ZZ"};
+
+constexpr std::array<std::string_view, index_of(MoveMode::kCount)> kMoveModeNames = {
+    "linear", "rapid", "circle1", "circle2", "circle3", "circle4", "pvt", "spline"};
+
+constexpr std::array<std::string_view, index_of(MotionParameter::kCount)> kMotionParameterNames = {
+    "ta", "td", "ts", "tsd", "tm", "f", "pvt", "spline0", "spline1", "spline2", "tsel", "ccr", "ccmode"};
+
+constexpr std::array<std::string_view, index_of(ProgramKind::kCount)> kProgramKindNames = {
+    "prog", "plc", "subprog", "forward", "inverse", "rotary", "online"};
+
+struct VerbRow { std::string_view name; int argument_count; };
+
+// In the order of ControlVerb.
+constexpr std::array<VerbRow, index_of(ControlVerb::kCount)> kVerbs = {{
+    {"abort", 1}, {"begin", 2}, {"run", 1}, {"step", 1}, {"start", 2}, {"pause", 1}, {"hold", 1}, {"resume", 1},
+    {"quick_stop", 1}, {"retrace", 1}, {"forward", 1}, {"enable", 1}, {"disable", 1}, {"ddisable", 1}, {"adisable", 1},
+    {"time_base", 2}, {"pmatch", 1}, {"pset", 2}, {"pclr", 1}, {"pstore", 1}, {"pload", 1},
+    {"define_lookahead", 2}, {"delete_lookahead", 1},
+    {"jog+", 1}, {"jog-", 1}, {"jog/", 1}, {"jog=", 2}, {"jog:", 2}, {"jog^", 2}, {"jog==", 2}, {"jog_return", 1},
+    {"home", 1}, {"homez", 1}, {"kill", 1}, {"dkill", 1}, {"phase", 1}, {"out", 2},
+    {"enable_plc", 1}, {"disable_plc", 1}, {"pause_plc", 1}, {"resume_plc", 1}, {"step_plc", 1},
+    {"report_position", 1}, {"report_velocity", 1}, {"report_desired", 1}, {"report_following_error", 1},
+    {"report_status", 1}, {"report_coord_position", 1}, {"report_coord_status", 1}, {"report_time_base", 1},
+    {"reset", 0}, {"save", 0},
+}};
+
+template <std::size_t N>
+std::string_view name_at(const std::array<std::string_view, N>& names, std::size_t index) {
+  return index < N ? names[index] : std::string_view("?");
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char ch) { return static_cast<char>(std::tolower(ch)); });
+  return result;
+}
+
+std::unordered_map<std::string, ElementId> make_element_names() {
+  std::unordered_map<std::string, ElementId> names;
+  for (std::size_t i = 0; i < kElementCount; ++i) names.emplace(lower_case(kElements[i].name), static_cast<ElementId>(i));
+  return names;
+}
+
+}  // namespace
+
+std::string_view axis_name(int axis_index) {
+  return axis_index < 0 ? "?" : name_at(kAxisNames, static_cast<std::size_t>(axis_index));
+}
+
+int axis_index_from_name(std::string_view name) {
+  if (name.empty() || name.size() > 2) return -1;
+  std::string upper(name);
+  for (char& ch : upper) ch = static_cast<char>(std::toupper(static_cast<unsigned char>(ch)));
+  const auto found = std::find(kAxisNames.begin(), kAxisNames.end(), upper);
+  return found == kAxisNames.end() ? -1 : static_cast<int>(found - kAxisNames.begin());
+}
+
+std::string_view move_mode_name(MoveMode mode) { return name_at(kMoveModeNames, index_of(mode)); }
+std::string_view motion_parameter_name(MotionParameter parameter) {
+  return name_at(kMotionParameterNames, index_of(parameter));
+}
+std::string_view program_kind_name(ProgramKind kind) { return name_at(kProgramKindNames, index_of(kind)); }
+
+std::string_view control_verb_name(ControlVerb verb) {
+  return index_of(verb) < kVerbs.size() ? kVerbs[index_of(verb)].name : std::string_view("?");
+}
+
+int control_argument_count(ControlVerb verb) {
+  return index_of(verb) < kVerbs.size() ? kVerbs[index_of(verb)].argument_count : 0;
+}
+
+const OpcodeInfo& opcode_info(Opcode opcode) {
+  return index_of(opcode) < kOpcodeCount ? kOpcodes[index_of(opcode)] : kUnknownOpcode;
+}
+
+const FunctionInfo& function_info(Function function) {
+  return index_of(function) < kFunctionCount ? kFunctions[index_of(function)] : kUnknownFunction;
+}
+
+const ElementInfo& element_info(ElementId id) {
+  return index_of(id) < kElementCount ? kElements[index_of(id)] : kUnknownElement;
+}
+
+int ElementInfo::index_count() const {
+  int count = 0;
+  while (count < kMaxElementIndices && index_counts[count] > 0) ++count;
+  return count;
+}
+
+ElementId find_element(std::string_view pattern) {
+  static const std::unordered_map<std::string, ElementId> names = make_element_names();
+  const auto found = names.find(lower_case(pattern));
+  return found == names.end() ? ElementId::kCount : found->second;
+}
+
+}  // namespace pmac::bytecode

@@ -1,0 +1,61 @@
+// The text forms of the compiler's hops.
+#include <fmt/format.h>
+
+#include "compiler/compiler.h"
+#include "compiler/session_state.h"
+
+namespace pmac::compiler {
+namespace {
+
+std::string_view symbol_kind_name(bytecode::SymbolKind kind) {
+  constexpr std::string_view kNames[] = {"global", "csglobal", "ptr", "prog", "plc", "subprog", "macro"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string symbol_place(const bytecode::Symbol& symbol) {
+  switch (symbol.kind) {
+    case bytecode::SymbolKind::kGlobal: return fmt::format("P{}", symbol.number);
+    case bytecode::SymbolKind::kCsGlobal: return fmt::format("Q{}", symbol.number);
+    case bytecode::SymbolKind::kPointer: return fmt::format("M{}", symbol.number);
+    case bytecode::SymbolKind::kMacro: return symbol.text;
+    default: return fmt::format("{}", symbol.number);
+  }
+}
+
+std::string element_indices(const bytecode::ElementInfo& info) {
+  std::string text;
+  for (int i = 0; i < info.index_count(); ++i) text += fmt::format("{}0..{}", i ? " " : "", info.index_counts[i] - 1);
+  return text.empty() ? "-" : text;
+}
+
+}  // namespace
+
+std::string emit_tokens(Session& session, const InputFile& file) { return session.state().frontend.tokens(file.name, file.text); }
+std::string emit_tree(Session& session, const InputFile& file) { return session.state().frontend.tree(file.name, file.text); }
+
+std::string emit_ir(Session& session, const std::vector<InputFile>& files) {
+  std::string out;
+  for (const ir::Unit& unit : session.state().analyse(files, false)) out += ir::print(unit);
+  return out;
+}
+
+std::string emit_symbols(const bytecode::Module& module) {
+  std::string out;
+  for (const bytecode::Symbol& symbol : module.symbols)
+    out += fmt::format("{} {} {}{}\n", symbol_kind_name(symbol.kind), symbol.name, symbol_place(symbol), symbol.size ? fmt::format(" size {}", symbol.size) : "");
+  return out;
+}
+
+std::string emit_elements() {
+  std::string out;
+  constexpr std::string_view kAccess[] = {"saved", "work", "status"};
+  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) {
+    const bytecode::ElementInfo& info = bytecode::element_info(static_cast<bytecode::ElementId>(i));
+    const bool acts = info.simulation == bytecode::ElementSimulation::kActs;
+    out += fmt::format("{} | {} | {} | {} | {} | {} | {}\n", info.name, element_indices(info), info.default_value, info.unit.empty() ? "-" : info.unit,
+                       kAccess[static_cast<std::size_t>(info.access)], acts ? "simulated" : "stored", info.meaning);
+  }
+  return out;
+}
+
+}  // namespace pmac::compiler

@@ -1,0 +1,73 @@
+#include "compiler/frontend/power_pmac/frontend.h"
+
+#include <fmt/format.h>
+
+#include "compiler/frontend/power_pmac/lowering.h"
+#include "compiler/frontend/power_pmac/preprocessor.h"
+#include "compiler/frontend/power_pmac/syntax_tree.h"
+
+namespace pmac::compiler::power_pmac {
+
+struct Frontend::State {
+  State(source::SourceManager& s, source::Diagnostics& d, const std::vector<std::string>& dirs) : sources(s), diagnostics(d), preprocessor(s, d, dirs) {}
+
+  ExpandedText expand(const std::string& name, std::string text) { return preprocessor.run(sources.add_file(name, std::move(text))); }
+
+  source::SourceManager& sources;
+  source::Diagnostics& diagnostics;
+  Preprocessor preprocessor;
+  DeclaredNames names;
+};
+
+Frontend::Frontend(source::SourceManager& sources, source::Diagnostics& diagnostics, const std::vector<std::string>& include_dirs)
+    : state_(std::make_unique<State>(sources, diagnostics, include_dirs)) {}
+Frontend::~Frontend() = default;
+
+void Frontend::define(const std::string& name, const std::string& text) { state_->preprocessor.define(name, text); }
+void Frontend::know_name(const std::string& name) { state_->names.global.insert(name); }
+
+std::vector<std::string> Frontend::known_names() const { return {state_->names.global.begin(), state_->names.global.end()}; }
+
+ir::Unit Frontend::read(const std::string& name, std::string text) {
+  state_->names.local.clear();
+  const auto tree = parse(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
+  return Lowering(*tree, state_->diagnostics).lower_file(tree->root);
+}
+
+std::string Frontend::tokens(const std::string& name, std::string text) {
+  const auto tree = lex(state_->expand(name, std::move(text)), state_->names);
+  std::string out;
+  for (const antlr4::Token* token : tree->tokens->getTokens()) {
+    if (token->getType() == antlr4::Token::EOF) break;
+    const source::Span span = tree->span_of(*token);
+    const source::LineColumn at = state_->sources.line_column(span.file, span.begin);
+    std::string kind = token_name(token->getType());
+    if (kind.empty()) kind = "OPERATOR";
+    out += fmt::format("{}:{} {} {}\n", at.line, at.column, kind, tree->text_of(*token));
+  }
+  return out;
+}
+
+namespace {
+
+void print_tree(const SyntaxTree& tree, antlr4::tree::ParseTree* node, int depth, std::string& out) {
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  if (auto* leaf = dynamic_cast<antlr4::tree::TerminalNode*>(node)) {
+    if (leaf->getSymbol()->getType() != antlr4::Token::EOF) out += fmt::format("{}'{}'\n", indent, tree.text_of(*leaf->getSymbol()));
+    return;
+  }
+  const auto* rule = dynamic_cast<antlr4::ParserRuleContext*>(node);
+  out += fmt::format("{}{}\n", indent, tree.parser->getRuleNames()[rule->getRuleIndex()]);
+  for (antlr4::tree::ParseTree* child : node->children) print_tree(tree, child, depth + 1, out);
+}
+
+}  // namespace
+
+std::string Frontend::tree(const std::string& name, std::string text) {
+  const auto tree = parse(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
+  std::string out;
+  if (tree->root) print_tree(*tree, tree->root, 0, out);
+  return out;
+}
+
+}  // namespace pmac::compiler::power_pmac

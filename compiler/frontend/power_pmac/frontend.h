@@ -1,0 +1,35 @@
+// The Power PMAC front end: files in, IR out. Keeps macros and declared names from one file to the next.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/ir/ir.h"
+#include "compiler/source/source.h"
+
+namespace pmac::compiler::power_pmac {
+
+class Frontend {
+ public:
+  Frontend(source::SourceManager& sources, source::Diagnostics& diagnostics, const std::vector<std::string>& include_dirs);
+  ~Frontend();
+
+  void define(const std::string& name, const std::string& text);
+  /// A name that is one word from now on, from an object file.
+  void know_name(const std::string& name);
+  /// Names that declarations of all texts so far mention, right or wrong.
+  std::vector<std::string> known_names() const;
+
+  ir::Unit read(const std::string& name, std::string text);
+  /// One token a line: line:column, kind, text.
+  std::string tokens(const std::string& name, std::string text);
+  /// The parse tree, one rule a line, indented.
+  std::string tree(const std::string& name, std::string text);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pmac::compiler::power_pmac

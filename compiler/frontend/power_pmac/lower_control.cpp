@@ -1,0 +1,172 @@
+// Statements that act on programs, motors and coordinate systems; most are on-line commands too.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/frontend/power_pmac/lowering.h"
+
+namespace pmac::compiler::power_pmac {
+namespace {
+
+using ir::ControlVerb;
+using P = grammar::PowerPmacParser;
+
+constexpr std::int64_t kMaxListed = 1000;
+
+ControlVerb verb_of(std::size_t token, bool plc) {
+  switch (token) {
+    case P::ENABLE: return plc ? ControlVerb::kEnablePlc : ControlVerb::kEnable;
+    case P::DISABLE: return plc ? ControlVerb::kDisablePlc : ControlVerb::kDisable;
+    case P::PAUSE: return plc ? ControlVerb::kPausePlc : ControlVerb::kPause;
+    case P::RESUME: return plc ? ControlVerb::kResumePlc : ControlVerb::kResume;
+    case P::STEP: return plc ? ControlVerb::kStepPlc : ControlVerb::kStep;
+    case P::ADISABLE: return ControlVerb::kAbortDisable;
+    case P::DDISABLE: return ControlVerb::kDelayedDisable;
+    case P::HOLD: return ControlVerb::kHold;
+    case P::RUN: return ControlVerb::kRun;
+    case P::HOME: return ControlVerb::kHome;
+    case P::HOMEZ: return ControlVerb::kHomeZero;
+    case P::KILL: return ControlVerb::kKill;
+    case P::DKILL: return ControlVerb::kDelayedKill;
+    default: return ControlVerb::kAbort;
+  }
+}
+
+bool acts_on_motors(ControlVerb verb) {
+  return verb == ControlVerb::kHome || verb == ControlVerb::kHomeZero || verb == ControlVerb::kKill || verb == ControlVerb::kDelayedKill;
+}
+
+}  // namespace
+
+std::string Lowering::string_value(const antlr4::Token& token) const {
+  const std::string_view text = tree_.text_of(token);
+  std::string value;
+  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+    if (text[i] != '\\' || i + 2 >= text.size()) { value += text[i]; continue; }
+    const char next = text[++i];
+    value += next == 'n' ? '\n' : next == 't' ? '\t' : next == 'r' ? '\r' : next;
+  }
+  return value;
+}
+
+void Lowering::add_control(ControlVerb verb, source::Span span, std::vector<ir::ExprPtr> arguments, ir::Body& out) {
+  out.push_back(ir::make_stmt(span, ir::Control{verb, std::move(arguments)}));
+}
+
+/// One expression for each number of a list such as 1..3,7; a null one where there is no list.
+std::vector<ir::ExprPtr> Lowering::lower_number_list(P::NumberListContext* list) {
+  std::vector<ir::ExprPtr> numbers;
+  if (!list) {
+    numbers.push_back(nullptr);
+    return numbers;
+  }
+  for (P::NumberItemContext* item : list->numberItem()) {
+    const source::Span span = span_of(item);
+    if (item->NAME()) {
+      numbers.push_back(std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}}));
+    } else if (item->expression()) {
+      numbers.push_back(lower_expression(item->expression()));
+    } else if (item->STAR()) {
+      not_supported(span, "the list * of all motors or coordinate systems");
+    } else if (item->NUMBER().size() == 1) {
+      numbers.push_back(lower_number(token_of(item->NUMBER(0))));
+    } else if (item->NUMBER().size() == 2) {
+      const auto first = whole_number(token_of(item->NUMBER(0)), kMaxListed);
+      const auto last = whole_number(token_of(item->NUMBER(1)), kMaxListed);
+      if (first && last && *first > *last) diagnostics_.error("PM3005", span, "a range goes from the lower to the higher number");
+      for (std::int64_t n = first.value_or(0); first && last && n <= *last; ++n) numbers.push_back(ir::make_number(static_cast<double>(n), span));
+    }
+  }
+  return numbers;
+}
+
+ir::ExprPtr Lowering::lower_program_name(P::ProgramNameContext* name) {
+  if (!name) return nullptr;
+  if (name->NUMBER()) return lower_number(token_of(name->NUMBER()));
+  return std::make_unique<ir::Expr>(ir::Expr{span_of(name), ir::NameUse{text_of(token_of(name->NAME())), false, {}}});
+}
+
+void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body& out) {
+  const source::Span span = span_of(control);
+  if (control->JOG()) return lower_jog(control->jogAction(), span, out);
+  if (control->BEGIN() || control->START()) return lower_start(control, out);
+  if (control->CMD()) return out.push_back(ir::make_stmt(span, ir::Command{string_value(*control->STRING()->getSymbol())}));
+  if (control->SEND()) {
+    if (!control->expression().empty()) return not_supported(span, "send with values");
+    const auto port = control->NUMBER() ? whole_number(token_of(control->NUMBER()), 7).value_or(0) : 0;
+    return out.push_back(ir::make_stmt(span, ir::Send{static_cast<int>(port), string_value(*control->STRING()->getSymbol())}));
+  }
+  if (control->SENDALLCMDS()) return not_supported(span, "sendallcmds");
+  ControlVerb verb = ControlVerb::kPmatch;
+  if (control->LH()) {
+    const std::string direction = text_of(control->direction);
+    verb = direction == "<" ? ControlVerb::kRetrace : direction == ">" ? ControlVerb::kForward : ControlVerb::kQuickStop;
+  } else if (control->JOGRET()) {
+    if (control->data()) return not_supported(span, "jogret with a position");
+    verb = ControlVerb::kJogReturn;
+  } else if (control->kind) {
+    verb = verb_of(control->kind->getType(), control->PLC() != nullptr);
+  }
+  std::vector<ir::ExprPtr> numbers;
+  if (!control->numberList() && online_) numbers = acts_on_motors(verb) ? addressed_motors(span) : addressed_coords(span);
+  else numbers = lower_number_list(control->numberList());
+  for (ir::ExprPtr& number : numbers) {
+    std::vector<ir::ExprPtr> arguments;
+    arguments.push_back(std::move(number));
+    add_control(verb, span, std::move(arguments), out);
+  }
+}
+
+/// begin1:500, begin:500, start3:500; on-line also start500.
+void Lowering::lower_start(P::ProgramControlContext* control, ir::Body& out) {
+  const ControlVerb verb = control->BEGIN() ? ControlVerb::kBegin : ControlVerb::kStart;
+  for (P::StartItemContext* item : control->startItem()) {
+    const source::Span span = span_of(item);
+    ir::ExprPtr coord;
+    ir::ExprPtr program = lower_program_name(item->programName());
+    const bool number_is_program = online_ && item->NUMBER() && !item->programName();
+    if (item->NAME()) program = std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}});
+    else if (number_is_program) program = lower_number(token_of(item->NUMBER()));
+    else if (item->NUMBER()) coord = lower_number(token_of(item->NUMBER()));
+    if (!program) {
+      diagnostics_.error("PM3006", span, fmt::format("{} needs the program too, as in {}1:500", lower_case(text_of(control->start)), lower_case(text_of(control->start))));
+      continue;
+    }
+    std::vector<ir::ExprPtr> arguments;
+    arguments.push_back(std::move(coord));
+    arguments.push_back(std::move(program));
+    add_control(verb, source::join(span_of(control->start), span), std::move(arguments), out);
+  }
+}
+
+void Lowering::lower_jog(P::JogActionContext* jog, source::Span span, ir::Body& out) {
+  if (!jog) return;
+  if (jog->trigger) return not_supported(span_of(jog->trigger), "a jog until trigger");
+  const std::string operation = text_of(jog->operation);
+  P::JogDistanceContext* distance = jog->jogDistance();
+  ControlVerb verb = ControlVerb::kJogStop;
+  if (operation == "+") verb = ControlVerb::kJogPlus;
+  else if (operation == "-") verb = ControlVerb::kJogMinus;
+  else if (operation == "=") verb = ControlVerb::kJogTo;
+  else if (operation == "==") verb = ControlVerb::kJogToAndKeep;
+  else if (operation == ":") verb = ControlVerb::kJogBy;
+  else if (operation == "^") verb = ControlVerb::kJogByActual;
+  for (ir::ExprPtr& motor : lower_number_list(jog->numberList())) {
+    std::vector<ir::ExprPtr> arguments;
+    arguments.push_back(std::move(motor));
+    if (distance) arguments.push_back(distance->data() ? lower_data(distance->data()) : nullptr);
+    add_control(verb, span, std::move(arguments), out);
+  }
+}
+
+void Lowering::lower_pset(P::SimpleStatementContext* statement, ir::Body& out) {
+  for (P::AxisWordContext* word : statement->axisWord()) {
+    const int axis = axis_index(word->start);
+    std::vector<ir::ExprPtr> arguments;
+    arguments.push_back(ir::make_number(axis, span_of(word)));
+    arguments.push_back(lower_data(word->data(0)));
+    add_control(ControlVerb::kPset, span_of(word), std::move(arguments), out);
+  }
+}
+
+}  // namespace pmac::compiler::power_pmac

@@ -1,0 +1,260 @@
+// Statements of buffers: assignments, flow control, calls, declarations.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "compiler/frontend/power_pmac/lowering.h"
+
+namespace pmac::compiler::power_pmac {
+namespace {
+
+using bytecode::AssignOp;
+
+AssignOp assign_operator(std::string_view text) {
+  switch (text[0]) {
+    case '+': return AssignOp::kAdd;
+    case '-': return AssignOp::kSub;
+    case '*': return AssignOp::kMul;
+    case '/': return AssignOp::kDiv;
+    case '%': return AssignOp::kMod;
+    case '&': return AssignOp::kAnd;
+    case '|': return AssignOp::kOr;
+    case '^': return AssignOp::kXor;
+    case '<': return AssignOp::kShiftLeft;
+    case '>': return AssignOp::kShiftRight;
+    default: return AssignOp::kSet;
+  }
+}
+
+std::optional<bytecode::PointerKind> io_kind(std::string_view text) {
+  const bool user = text.find("user") != std::string_view::npos;
+  switch (text[0]) {
+    case 'u': case 's': case 'i': return user ? bytecode::PointerKind::kUserInteger : bytecode::PointerKind::kIo;
+    case 'f': return user ? std::optional(bytecode::PointerKind::kUserFloat) : std::nullopt;
+    case 'd': return user ? std::optional(bytecode::PointerKind::kUserDouble) : std::nullopt;
+    default: return std::nullopt;
+  }
+}
+
+/// The numbers of u.io:$A0000C.12.1 behind the colon.
+std::vector<std::uint64_t> dotted_numbers(std::string_view text) {
+  std::vector<std::uint64_t> numbers;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('.', at), text.size());
+    const bool hex = text[at] == '$';
+    std::uint64_t value = 0;
+    std::from_chars(text.data() + at + (hex ? 1 : 0), text.data() + end, value, hex ? 16 : 10);
+    numbers.push_back(value);
+    at = end + 1;
+  }
+  return numbers;
+}
+
+}  // namespace
+
+void Lowering::lower_statements(const std::vector<P::StatementContext*>& statements, ir::Body& out) {
+  for (P::StatementContext* statement : statements) lower_statement(statement, out);
+}
+
+void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
+  if (!statement || statement->exception) return;
+  const source::Span span = span_of(statement);
+  if (auto* block = statement->block()) return out.push_back(lower_block(block));
+  if (auto* branch = statement->ifStatement()) return out.push_back(lower_if(branch));
+  if (auto* loop = statement->whileStatement()) {
+    ir::ExprPtr condition = lower_condition(loop->condition());
+    return out.push_back(ir::make_stmt(span, ir::While{std::move(condition), lower_body(loop->body())}));
+  }
+  if (auto* loop = statement->doStatement()) {
+    ir::StmtPtr body = lower_body(loop->body());
+    return out.push_back(ir::make_stmt(span, ir::DoWhile{std::move(body), lower_condition(loop->condition())}));
+  }
+  if (auto* selection = statement->switchStatement()) return out.push_back(lower_switch(selection));
+  if (auto* label = statement->label()) return lower_label(label, out);
+  if (auto* declaration = statement->declaration()) return lower_declaration(declaration, out);
+  if (auto* move = statement->move()) return lower_move(move, out);
+  if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
+  if (auto* code = statement->codeLine()) return not_supported(span_of(code), fmt::format("the code letter {}", text_of(code->start)));
+  if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
+  if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
+  if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
+  if (statement->openInBuffer()) diagnostics_.error("PM2005", span, "open inside an open buffer; close is missing before it");
+}
+
+ir::StmtPtr Lowering::lower_body(P::BodyContext* body) {
+  ir::Block block;
+  if (body) lower_statement(body->statement(), block.body);
+  return ir::make_stmt(span_of(body), std::move(block));
+}
+
+ir::StmtPtr Lowering::lower_block(P::BlockContext* block) {
+  ir::Block result;
+  lower_statements(block->statement(), result.body);
+  return ir::make_stmt(span_of(block), std::move(result));
+}
+
+ir::StmtPtr Lowering::lower_if(P::IfStatementContext* statement) {
+  ir::If result;
+  const auto bodies = statement->body();
+  ir::ExprPtr condition = lower_condition(statement->condition());
+  result.branches.push_back({std::move(condition), lower_body(bodies.empty() ? nullptr : bodies[0])});
+  for (P::ElseIfContext* branch : statement->elseIf()) {
+    ir::ExprPtr else_condition = lower_condition(branch->condition());
+    result.branches.push_back({std::move(else_condition), lower_body(branch->body())});
+  }
+  if (bodies.size() > 1) result.otherwise = lower_body(bodies[1]);
+  return ir::make_stmt(span_of(statement), std::move(result));
+}
+
+ir::StmtPtr Lowering::lower_switch(P::SwitchStatementContext* statement) {
+  ir::Switch result;
+  result.value = lower_expression(statement->expression());
+  for (antlr4::tree::ParseTree* child : statement->children) {
+    if (auto* inner = dynamic_cast<P::StatementContext*>(child)) lower_statement(inner, result.body);
+    auto* label = dynamic_cast<P::CaseLabelContext*>(child);
+    if (!label || label->exception) continue;
+    ir::ExprPtr value = label->expression() ? lower_expression(label->expression()) : nullptr;
+    result.cases.push_back({std::move(value), span_of(label), result.body.size()});
+  }
+  return ir::make_stmt(span_of(statement), std::move(result));
+}
+
+void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
+  const auto number = whole_number(token_of(label->NUMBER()), 4294967295);
+  const bool is_block_number = label->COLON() == nullptr;
+  if (number && !is_block_number) out.push_back(ir::make_stmt(span_of(label), ir::Label{*number}));
+}
+
+void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
+  ir::Assign result;
+  result.target = lower_lvalue(assignment->lvalue());
+  if (assignment->step) {
+    const std::string text = text_of(assignment->step);
+    result.op = assign_operator(text);
+    result.synchronous = text.ends_with('=');
+    result.values.push_back(ir::make_number(1, span_of(assignment->step)));
+  } else {
+    const std::string text = text_of(assignment->operation);
+    result.op = text == "=" || text == "==" ? AssignOp::kSet : assign_operator(text);
+    result.synchronous = text.ends_with("==");
+    for (P::ExpressionContext* value : assignment->expression()) result.values.push_back(lower_expression(value));
+  }
+  out.push_back(ir::make_stmt(span_of(assignment), std::move(result)));
+}
+
+void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out) {
+  const source::Span span = span_of(statement);
+  if (statement->BREAK()) return out.push_back(ir::make_stmt(span, ir::Break{}));
+  if (statement->CONTINUE()) return out.push_back(ir::make_stmt(span, ir::Continue{}));
+  if (statement->RETURN()) return out.push_back(ir::make_stmt(span, ir::Return{}));
+  if (statement->STOP()) return out.push_back(ir::make_stmt(span, ir::Stop{}));
+  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(lower_jump(statement));
+  if (statement->CALL()) return out.push_back(lower_call(statement));
+  if (statement->DWELL()) return out.push_back(ir::make_stmt(span, ir::Dwell{lower_data(statement->data())}));
+  if (statement->DELAY()) return out.push_back(ir::make_stmt(span, ir::Delay{lower_data(statement->data())}));
+  if (statement->PSET()) return lower_pset(statement, out);
+  if (statement->programControl()) return lower_program_control(statement->programControl(), out);
+  const bool bias = statement->PCLR() || statement->PSTORE() || statement->PLOAD();
+  if (bias && !statement->axisList()) {
+    const auto verb = statement->PCLR() ? ir::ControlVerb::kPclr : statement->PSTORE() ? ir::ControlVerb::kPstore : ir::ControlVerb::kPload;
+    std::vector<ir::ExprPtr> arguments;
+    arguments.push_back(nullptr);
+    return add_control(verb, span, std::move(arguments), out);
+  }
+  not_supported(span, lower_case(text_of(statement->start)));
+}
+
+ir::StmtPtr Lowering::lower_jump(P::SimpleStatementContext* statement) {
+  ir::Jump jump;
+  jump.kind = statement->GOTO() ? ir::JumpKind::kGoto : statement->GOSUB() ? ir::JumpKind::kGosub : ir::JumpKind::kCallsub;
+  P::LabelNumberContext* label = statement->labelNumber();
+  if (label && label->NAME()) jump.name = text_of(token_of(label->NAME()));
+  else if (label && label->NUMBER()) jump.label = lower_number(token_of(label->NUMBER()));
+  else jump.label = lower_expression(label ? label->expression() : nullptr);
+  jump.arguments = lower_arguments(statement->arguments());
+  return ir::make_stmt(span_of(statement), std::move(jump));
+}
+
+ir::StmtPtr Lowering::lower_call(P::SimpleStatementContext* statement) {
+  ir::Call call;
+  P::CallTargetContext* target = statement->callTarget();
+  call.name_span = span_of(target);
+  if (target && target->NAME()) {
+    call.name = text_of(token_of(target->NAME()));
+    call.routine = text_of(token_of(target->MEMBER()));
+  } else {
+    call.number = target && target->NUMBER() ? lower_number(token_of(target->NUMBER())) : lower_expression(target ? target->expression() : nullptr);
+  }
+  call.arguments = lower_arguments(statement->arguments());
+  return ir::make_stmt(span_of(statement), std::move(call));
+}
+
+void Lowering::lower_declaration(P::DeclarationContext* declaration, ir::Body& out) {
+  const source::Span span = span_of(declaration);
+  for (P::PointerDeclaratorContext* pointer : declaration->pointerDeclarator()) {
+    bytecode::PointerDefinition definition;
+    definition.first_m = definition.last_m = -1;
+    definition.name = text_of(token_of(pointer->NAME()));
+    ir::StmtPtr statement = lower_pointer(pointer->pointerTarget(), span_of(pointer), definition);
+    auto& node = std::get<ir::DefinePointer>(statement->node);
+    node.name = definition.name;
+    node.name_span = span_of(token_of(pointer->NAME()));
+    if (pointer->NUMBER()) node.size = static_cast<int>(whole_number(token_of(pointer->NUMBER()), bytecode::kMCount).value_or(0));
+    out.push_back(std::move(statement));
+  }
+  if (!declaration->kind) return;
+  const auto sizes = [&](P::DeclaratorContext* d) { return d->LEFT() && !d->expression().empty() ? lower_expression(d->expression(0)) : nullptr; };
+  const auto values = [&](P::DeclaratorContext* d) { return d->ASSIGN() && !d->expression().empty() ? lower_expression(d->expression().back()) : nullptr; };
+  if (declaration->kind->getType() == P::LOCAL) {
+    ir::Locals locals;
+    for (P::DeclaratorContext* d : declaration->declarator())
+      if (d->NAME()) locals.names.push_back({text_of(token_of(d->NAME())), span_of(token_of(d->NAME())), sizes(d), values(d), -1});
+    return out.push_back(ir::make_stmt(span, std::move(locals)));
+  }
+  ir::Globals globals;
+  const auto variable_class = declaration->kind->getType() == P::GLOBAL ? ir::VariableClass::kP : ir::VariableClass::kQ;
+  for (P::DeclaratorContext* d : declaration->declarator())
+    if (d->NAME()) globals.names.push_back({variable_class, text_of(token_of(d->NAME())), span_of(token_of(d->NAME())), sizes(d), values(d), -1});
+  out.push_back(ir::make_stmt(span, std::move(globals)));
+}
+
+ir::StmtPtr Lowering::lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition) {
+  ir::DefinePointer result;
+  result.definition = std::move(definition);
+  if (target && target->IO_POINTER()) {
+    const std::string text = lower_case(text_of(token_of(target->IO_POINTER())));
+    const auto kind = io_kind(text);
+    const std::size_t colon = text.find_first_of(":.", 2);
+    const auto numbers = colon == std::string::npos ? std::vector<std::uint64_t>() : dotted_numbers(std::string_view(text).substr(colon + 1));
+    const std::uint64_t start = numbers.size() > 1 ? numbers[1] : 0;
+    const std::uint64_t width = numbers.size() > 2 ? numbers[2] : numbers.size() == 2 ? 1 : 32;
+    const bool valid = kind && !numbers.empty() && numbers.size() <= 3 && numbers[0] <= 0xffffffffu && start < 32 && width >= 1 && start + width <= 32;
+    if (!valid) {
+      diagnostics_.error("PM3004", span_of(target), "a pointer is u.io:$address.start.width, with start and width inside 32 bits");
+      return ir::make_stmt(span, std::move(result));
+    }
+    result.definition.kind = *kind;
+    result.definition.is_signed = text[0] == 's';
+    result.definition.address = static_cast<std::uint32_t>(numbers[0]);
+    result.definition.start_bit = static_cast<std::uint8_t>(start);
+    result.definition.width = static_cast<std::uint8_t>(width);
+  } else if (target && target->reference()) {
+    result.definition.kind = bytecode::PointerKind::kElement;
+    result.element = lower_reference(target->reference());
+    const auto bits = target->NUMBER();
+    std::vector<std::uint64_t> numbers;
+    for (antlr4::tree::TerminalNode* bit : bits) {
+      const std::string text = text_of(token_of(bit));
+      for (const std::uint64_t n : dotted_numbers(std::string_view(text).substr(text.starts_with('.') ? 1 : 0))) numbers.push_back(n);
+    }
+    result.definition.has_field = !numbers.empty();
+    const std::uint64_t start = numbers.empty() ? 0 : numbers[0];
+    const std::uint64_t width = numbers.size() > 1 ? numbers[1] : numbers.empty() ? 32 : 1;
+    if (start + width > 32 || width == 0) diagnostics_.error("PM3004", span_of(target), "the bits of a pointer lie inside 32 bits");
+    else result.definition.start_bit = static_cast<std::uint8_t>(start), result.definition.width = static_cast<std::uint8_t>(width);
+  }
+  return ir::make_stmt(span, std::move(result));
+}
+
+}  // namespace pmac::compiler::power_pmac

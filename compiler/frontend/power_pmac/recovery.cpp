@@ -1,0 +1,177 @@
+// Syntax errors: one message for each wrong statement, and on with the next statement. A rule inside a statement does not try to
+// repair anything: its exception goes up to the statement, which skips to its end.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/frontend/power_pmac/syntax_tree.h"
+
+namespace pmac::compiler::power_pmac {
+namespace {
+
+using Parser = grammar::PowerPmacParser;
+using antlr4::Token;
+
+bool absorbs_errors(std::size_t rule) {
+  return rule == Parser::RuleStatement || rule == Parser::RuleOnline || rule == Parser::RuleOpenHeader || rule == Parser::RuleEntryPoint ||
+         rule == Parser::RuleCaseLabel || rule == Parser::RuleBuffer || rule == Parser::RuleFile;
+}
+
+bool holds_statements(std::size_t rule) {
+  return rule == Parser::RuleFile || rule == Parser::RuleBuffer || rule == Parser::RuleBlock || rule == Parser::RuleSwitchStatement;
+}
+
+class Recovery : public antlr4::DefaultErrorStrategy {
+ public:
+  Recovery(const SyntaxTree& tree, const DeclaredNames& names, source::Diagnostics& diagnostics) : tree_(tree), names_(names), diagnostics_(diagnostics) {}
+
+  void recover(antlr4::Parser* parser, std::exception_ptr error) override {
+    if (!absorbs_errors(parser->getContext()->getRuleIndex())) std::rethrow_exception(error);
+    const bool no_progress = parser->getContext()->start && parser->getCurrentToken()->getTokenIndex() <= parser->getContext()->start->getTokenIndex();
+    skip_statement(*parser, no_progress);
+  }
+
+  antlr4::Token* recoverInline(antlr4::Parser* parser) override {
+    const std::size_t next = parser->getCurrentToken()->getType();
+    const bool buffer_left_open = parser->getContext()->getRuleIndex() == Parser::RuleBuffer && (next == Token::EOF || next == Parser::OPEN);
+    if (buffer_left_open) {
+      report_open_buffer(*parser);
+      return parser->getCurrentToken();
+    }
+    throw antlr4::InputMismatchException(parser);
+  }
+
+  /// Before each turn of a loop over statements: skips what no statement begins with.
+  void sync(antlr4::Parser* parser) override {
+    if (!holds_statements(parser->getContext()->getRuleIndex())) return;
+    const auto& expected = parser->getATN().nextTokens(parser->getInterpreter<antlr4::atn::ParserATNSimulator>()->atn.states[parser->getState()]);
+    if (parser->getContext()->getRuleIndex() == Parser::RuleSwitchStatement && !is_inside_braces(*parser)) return;
+    while (true) {
+      const std::size_t next = parser->getCurrentToken()->getType();
+      if (expected.contains(next) || expected.contains(Token::EPSILON)) return;
+      if (next == Token::EOF || (next == Parser::OPEN || next == Parser::CLOSE)) return;
+      report_unexpected_begin(*parser);
+      skip_statement(*parser, true);
+    }
+  }
+
+  void reportError(antlr4::Parser* parser, const antlr4::RecognitionException& error) override {
+    if (inErrorRecoveryMode(parser)) return;
+    beginErrorCondition(parser);
+    describe(*parser, error);
+  }
+
+ private:
+  static bool is_inside_braces(antlr4::Parser& parser) {
+    auto* context = parser.getContext();
+    return std::any_of(context->children.begin(), context->children.end(), [](antlr4::tree::ParseTree* child) { return child->getText() == "{"; });
+  }
+
+  void skip_statement(antlr4::Parser& parser, bool consume_first) {
+    const auto take = [&] {
+      if (parser.getCurrentToken()->getType() == Parser::LEFT_BRACE) ++phantom_braces_;
+      parser.consume();
+    };
+    const auto stops = [&] {
+      const std::size_t next = parser.getCurrentToken()->getType();
+      const bool new_line = parser.getTokenStream()->index() > 0 && parser.getCurrentToken()->getLine() != parser.getTokenStream()->LT(-1)->getLine();
+      return next == Token::EOF || next == Parser::CLOSE || next == Parser::OPEN || next == Parser::SEMICOLON || next == Parser::RIGHT_BRACE || new_line;
+    };
+    if (consume_first && parser.getCurrentToken()->getType() != Token::EOF) take();
+    while (!stops()) take();
+  }
+
+  std::string quoted(const antlr4::Token& token) const {
+    if (token.getType() == Token::EOF) return "the end of the file";
+    return fmt::format("'{}'", tree_.text_of(token));
+  }
+
+  void report_open_buffer(antlr4::Parser& parser) {
+    const auto* next = parser.getCurrentToken();
+    const auto opened = tree_.span_of(*parser.getContext()->start);
+    const bool at_end = next->getType() == Token::EOF;
+    const char* message = at_end ? "the buffer is never closed; add close" : "open inside an open buffer; close is missing before it";
+    diagnostics_.error(at_end ? "PM2004" : "PM2005", at_end ? opened : tree_.span_of(*next), message).notes.push_back({opened, "the buffer was opened here"});
+  }
+
+  void report_unexpected_begin(antlr4::Parser& parser) {
+    const auto* next = parser.getCurrentToken();
+    if (next->getType() == Parser::RIGHT_BRACE && phantom_braces_ > 0) {
+      --phantom_braces_;
+      return;
+    }
+    if (inErrorRecoveryMode(&parser)) return;
+    if (next->getType() == Parser::RIGHT_BRACE) diagnostics_.error("PM2003", tree_.span_of(*next), "this } closes nothing; remove it, or add the missing {");
+    else if (next->getType() == Parser::ELSE) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
+    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}", quoted(*next)));
+  }
+
+  void describe(antlr4::Parser& parser, const antlr4::RecognitionException& error) {
+    const auto* offending = error.getOffendingToken();
+    if (parser.getContext()->getRuleIndex() == Parser::RuleBuffer && offending->getType() == Token::EOF) return report_open_buffer(parser);
+    if (describe_missing_brace(parser, *offending) || describe_unknown_word(parser, *offending)) return;
+    const auto expected = error.getExpectedTokens();
+    const bool one_expected = expected.size() == 1;
+    if (one_expected) {
+      const std::string wanted = describe_token(static_cast<std::size_t>(expected.getSingleElement()));
+      diagnostics_.error("PM2002", tree_.span_of(*offending), fmt::format("expected {} before {}", wanted, quoted(*offending)));
+      return;
+    }
+    diagnostics_.error("PM2001", tree_.span_of(*offending), fmt::format("unexpected {}", quoted(*offending)));
+  }
+
+  bool describe_missing_brace(antlr4::Parser& parser, const antlr4::Token& offending) {
+    const std::size_t rule = parser.getContext()->getRuleIndex();
+    const bool in_block = rule == Parser::RuleBlock || rule == Parser::RuleSwitchStatement;
+    const std::size_t next = offending.getType();
+    if (!in_block || (next != Parser::CLOSE && next != Parser::OPEN && next != Token::EOF)) return false;
+    auto& message = diagnostics_.error("PM2007", tree_.span_of(offending), fmt::format("missing }} before {}", quoted(offending)));
+    message.notes.push_back({tree_.span_of(*parser.getContext()->start), "the block was opened here"});
+    return true;
+  }
+
+  /// A statement that begins with a word of no meaning, or that names something undeclared.
+  bool describe_unknown_word(antlr4::Parser& parser, const antlr4::Token& offending) {
+    const antlr4::Token* word = nullptr;
+    for (auto* context = parser.getContext(); context; context = dynamic_cast<antlr4::ParserRuleContext*>(context->parent)) {
+      const std::size_t rule = context->getRuleIndex();
+      if (rule != Parser::RuleStatement && rule != Parser::RuleOnline) continue;
+      word = context->start;
+      break;
+    }
+    const bool unknown = word && word->getType() == Parser::NAME && !names_.contains(tree_.text_of(*word)) &&
+                         (offending.getTokenIndex() <= word->getTokenIndex() + 1);
+    if (!unknown) return false;
+    report_unknown_word(*word);
+    return true;
+  }
+
+  void report_unknown_word(const antlr4::Token& token) {
+    const std::string_view word = tree_.text_of(token);
+    std::vector<std::string_view> candidates = keyword_names();
+    for (const std::string& name : names_.global) candidates.push_back(name);
+    for (const std::string& name : names_.local) candidates.push_back(name);
+    const std::size_t letters = static_cast<std::size_t>(std::find_if(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; }) - word.begin());
+    const bool looks_like_axis = letters <= 2 && letters < word.size();
+    if (looks_like_axis) {
+      diagnostics_.error("PM2009", tree_.span_of(token), fmt::format("'{}' is no axis; the axes are A B C U V W X Y Z and AA to HH, LL to ZZ", word.substr(0, letters)));
+      return;
+    }
+    const std::string_view near = source::nearest_word(word, candidates);
+    auto& error = diagnostics_.error("PM2008", tree_.span_of(token), near.empty() ? fmt::format("unknown word '{}'", word) : fmt::format("unknown word '{}'; did you mean '{}'?", word, near));
+    if (!near.empty()) error.fix = source::FixIt{tree_.span_of(token), std::string(near)};
+  }
+
+  const SyntaxTree& tree_;
+  const DeclaredNames& names_;
+  source::Diagnostics& diagnostics_;
+  int phantom_braces_ = 0;  // opening braces that were skipped
+};
+
+}  // namespace
+
+std::shared_ptr<antlr4::ANTLRErrorStrategy> make_recovery(const SyntaxTree& tree, const DeclaredNames& names, source::Diagnostics& diagnostics) {
+  return std::make_shared<Recovery>(tree, names, diagnostics);
+}
+
+}  // namespace pmac::compiler::power_pmac

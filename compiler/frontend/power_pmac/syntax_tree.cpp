@@ -1,0 +1,63 @@
+#include "compiler/frontend/power_pmac/syntax_tree.h"
+
+#include <atn/PredictionMode.h>
+
+#include <algorithm>
+
+namespace pmac::compiler::power_pmac {
+namespace {
+
+/// The parser generator reads UTF-8; one byte must stay one position, so other bytes than ASCII become question marks. Texts and
+/// comments keep theirs: they are taken from the expanded text.
+std::string as_ascii(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) >= 0x80) c = '?';
+  return text;
+}
+
+}  // namespace
+
+source::Span SyntaxTree::span_of(const antlr4::Token& token) const {
+  const std::size_t size = expanded.text().size();
+  if (token.getType() == antlr4::Token::EOF) {
+    const std::size_t last = expanded.text().find_last_not_of(" \t\r\n");
+    const std::size_t at = last == std::string::npos ? 0 : last;
+    return expanded.span_of(std::min(at, size), std::min(at + 1, size));
+  }
+  return expanded.span_of(token.getStartIndex(), token.getStopIndex() + 1);
+}
+
+source::Span SyntaxTree::span_of(const antlr4::ParserRuleContext& rule) const {
+  if (!rule.start) return {};
+  if (!rule.stop || rule.stop->getTokenIndex() < rule.start->getTokenIndex()) return span_of(*rule.start);
+  return source::join(span_of(*rule.start), span_of(*rule.stop));
+}
+
+std::string_view SyntaxTree::text_of(const antlr4::Token& token) const {
+  if (token.getType() == antlr4::Token::EOF) return {};
+  return std::string_view(expanded.text()).substr(token.getStartIndex(), token.getStopIndex() + 1 - token.getStartIndex());
+}
+
+std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names) {
+  auto tree = std::make_unique<SyntaxTree>();
+  tree->expanded = std::move(expanded);
+  tree->input = std::make_unique<antlr4::ANTLRInputStream>(as_ascii(tree->expanded.text()));
+  tree->lexer = std::make_unique<WordLexer>(tree->input.get(), tree->expanded.text(), names);
+  tree->tokens = std::make_unique<antlr4::CommonTokenStream>(tree->lexer.get());
+  tree->tokens->fill();
+  return tree;
+}
+
+std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics) {
+  auto tree = lex(std::move(expanded), names);
+  if (!within_limits(*tree, diagnostics)) return tree;
+  tree->parser = std::make_unique<grammar::PowerPmacParser>(tree->tokens.get());
+  tree->parser->inside_parentheses = &tree->inside_parentheses;
+  tree->parser->removeErrorListeners();
+  tree->parser->setErrorHandler(make_recovery(*tree, names, diagnostics));
+  tree->parser->getInterpreter<antlr4::atn::ParserATNSimulator>()->setPredictionMode(antlr4::atn::PredictionMode::SLL);
+  tree->root = tree->parser->file();
+  return tree;
+}
+
+}  // namespace pmac::compiler::power_pmac

@@ -1,0 +1,42 @@
+// From expanded text to the parse tree: lexer, limits, parser with recovery by statement.
+// Private to this folder: shows the parser generator's types.
+#pragma once
+
+#include <PowerPmacParser.h>
+
+#include <memory>
+
+#include "compiler/frontend/power_pmac/preprocessor.h"
+#include "compiler/frontend/power_pmac/word_lexer.h"
+#include "compiler/source/source.h"
+
+namespace pmac::compiler::power_pmac {
+
+/// A parse tree with everything it refers to.
+struct SyntaxTree {
+  ExpandedText expanded;
+  std::unique_ptr<antlr4::ANTLRInputStream> input;
+  std::unique_ptr<WordLexer> lexer;
+  std::unique_ptr<antlr4::CommonTokenStream> tokens;
+  std::unique_ptr<grammar::PowerPmacParser> parser;
+  std::vector<bool> inside_parentheses;  // by token index
+  grammar::PowerPmacParser::FileContext* root = nullptr;  // null where a limit stopped the parse
+
+  source::Span span_of(const antlr4::Token& token) const;
+  source::Span span_of(const antlr4::ParserRuleContext& rule) const;
+  std::string_view text_of(const antlr4::Token& token) const;
+};
+
+/// Lexes without parsing, for --emit=tokens.
+std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names);
+
+/// Reports every syntax error to diagnostics; the tree then has gaps (rules with an exception).
+std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics);
+
+/// Finds nesting that would be too deep for the parser's stack. False: reported, do not parse.
+bool within_limits(SyntaxTree& tree, source::Diagnostics& diagnostics);
+
+/// Reports syntax errors and skips to the next statement.
+std::shared_ptr<antlr4::ANTLRErrorStrategy> make_recovery(const SyntaxTree& tree, const DeclaredNames& names, source::Diagnostics& diagnostics);
+
+}  // namespace pmac::compiler::power_pmac

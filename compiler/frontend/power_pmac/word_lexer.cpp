@@ -1,0 +1,274 @@
+#include "compiler/frontend/power_pmac/word_lexer.h"
+
+#include <algorithm>
+#include <cctype>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/bytecode/bytecode.h"
+
+namespace pmac::compiler::power_pmac {
+namespace {
+
+using T = grammar::PowerPmacParser;  // its token numbers
+using Table = std::unordered_map<std::string, std::size_t>;
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+
+const antlr4::dfa::Vocabulary& token_vocabulary() {
+  static T parser(nullptr);
+  return parser.getVocabulary();
+}
+
+/// The keyword tokens of the grammar stand in one run; their names are the words.
+void add_keywords(Table& table, std::size_t first, std::size_t last) {
+  const auto& vocabulary = token_vocabulary();
+  for (std::size_t type = first; type <= last; ++type) table[lower(vocabulary.getSymbolicName(type))] = type;
+}
+
+Table make_buffer_keywords() {
+  Table table;
+  add_keywords(table, T::OPEN, T::WHILE);
+  return table;
+}
+
+Table make_online_keywords() {
+  Table table;
+  add_keywords(table, T::OPEN, T::STEP);
+  table.erase("local");
+  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save"}) table[word] = T::COMMAND;
+  for (const char* word : {"fsave", "reboot", "vers", "type", "cpu", "cid", "size", "buffer", "list", "undefine", "date", "time", "system", "free", "dir"})
+    table[word] = T::OTHER_COMMAND;
+  table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"clear", T::CLEAR}, {"cx", T::CX}, {"define", T::DEFINE},
+                {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}});
+  return table;
+}
+
+const Table& buffer_keywords() { static const Table table = make_buffer_keywords(); return table; }
+const Table& online_keywords() { static const Table table = make_online_keywords(); return table; }
+
+std::size_t find(const Table& table, std::string_view word) {
+  const auto found = table.find(lower(word));
+  return found == table.end() ? 0 : found->second;
+}
+
+/// Token of a letter or axis name, or 0.
+std::size_t letter_type(std::string_view run) {
+  const std::string word = lower(run);
+  if (word.size() == 1) {
+    switch (word[0]) {
+      case 'p': case 'q': case 'l': return T::VAR;
+      case 'c': return T::LETTER_C;
+      case 'd': return T::LETTER_D;
+      case 'f': return T::LETTER_F;
+      case 'i': return T::LETTER_I;
+      case 'm': return T::LETTER_M;
+      case 'n': return T::LETTER_N;
+      case 'r': return T::LETTER_R;
+      case 'j': case 'k': return T::VECTOR;
+      case 'g': case 't': case 's': case 'h': return T::CODE;
+      default: break;
+    }
+  }
+  if (word == "ii" || word == "jj" || word == "kk") return T::VECTOR;
+  return bytecode::axis_index_from_name(word) >= 0 ? T::AXIS : 0;
+}
+
+std::size_t run_length(std::string_view word) {
+  return static_cast<std::size_t>(std::find_if_not(word.begin(), word.end(), is_letter) - word.begin());
+}
+
+}  // namespace
+
+WordLexer::WordLexer(antlr4::ANTLRInputStream* input, std::string_view text, DeclaredNames& names)
+    : PowerPmacLexer(input), text_(text), names_(names) {
+  removeErrorListeners();
+}
+
+std::unique_ptr<antlr4::Token> WordLexer::nextToken() {
+  std::unique_ptr<antlr4::Token> next = PowerPmacLexer::nextToken();
+  std::size_t kind = next->getType();
+  if (line_is_buffered_ && next->getLine() != buffered_line_) line_is_buffered_ = false;
+  if (axis_definition_ && next->getLine() != axis_line_) axis_definition_ = false;
+  if (kind == T::WORD) {
+    const std::size_t begin = next->getStartIndex();
+    const Word word = classify(text_.substr(begin, next->getStopIndex() + 1 - begin), begin, next->getLine());
+    auto* writable = dynamic_cast<antlr4::WritableToken*>(next.get());
+    writable->setType(word.type);
+    kind = word.type;
+    if (begin + word.length <= next->getStopIndex()) {
+      split_end_ = std::max(split_end_, next->getStopIndex() + 1);
+      static_cast<antlr4::CommonToken*>(next.get())->setStopIndex(begin + word.length - 1);
+      setCharPositionInLine(next->getCharPositionInLine() + word.length);
+      _input->seek(begin + word.length);
+      hitEOF = false;  // the word may have reached the end of the text; its rest is still to be read
+    }
+    if (kind == T::NAME) declare(text_.substr(begin, word.length));
+  }
+  if (kind == T::NUMBER) last_number_is_zero_ = text_.substr(next->getStartIndex(), next->getStopIndex() + 1 - next->getStartIndex()) == "0";
+  follow(kind, next->getLine());
+  last_end_ = next->getStopIndex() + 1;
+  last_line_ = next->getLine();
+  return next;
+}
+
+WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, std::size_t line) {
+  const Word whole_name{T::NAME, word.size()};
+  const bool is_rest = begin < split_end_;
+  if (last_[0] == T::DOT) return {T::MEMBER, word.size()};  // behind a dot
+  if (axis_definition_) {
+    const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
+    if (kind) return {kind, run_length(word)};
+    axis_definition_ = false;
+  }
+  if (expect_name_ || (!is_rest && (names_.contains(word) || must_be_name(word, begin + word.size())))) return whole_name;
+  const bool buffered = in_buffer_ || (line_is_buffered_ && line == buffered_line_);
+  const Table& keywords = buffered ? buffer_keywords() : online_keywords();
+  const bool command_letter = !buffered && word.size() == 1;  // may be a variable: P(5)
+  if (const std::size_t keyword = find(keywords, word); keyword && !command_letter) return {keyword, word.size()};
+  const Word run = split(word, begin);
+  return run.type ? run : whole_name;
+}
+
+/// A program name, a structure, or the left side of an assignment that looks like a command.
+bool WordLexer::must_be_name(std::string_view word, std::size_t end) const {
+  const std::size_t next = text_.find_first_not_of(" \t", end);
+  const auto at = [&](std::size_t i) { return i < text_.size() ? text_[i] : '\0'; };
+  if (last_[0] == T::CALL) return true;
+  const bool opens_named = (last_[0] == T::PROG || last_[0] == T::PLC || last_[0] == T::SUBPROG) && (last_[1] == T::OPEN || find(buffer_keywords(), word) == 0);
+  if (opens_named) return true;
+  const bool has_digit = std::any_of(word.begin(), word.end(), is_digit);
+  if (at(end) == '[' || (at(end) == '.' && is_letter(at(end + 1)))) return !(has_digit && split(word, end - word.size()).type);
+  const bool assigned = at(next) == '=' && at(next + 1) != '=';
+  return !in_buffer_ && assigned && !has_digit && lower(word) != "j";
+}
+
+std::size_t WordLexer::axis_definition_type(std::string_view run) const {
+  const std::size_t before = last_[0];
+  if (before == T::NUMBER && last_[1] == T::ARROW && last_number_is_zero_) return 0;  // -> 0 is complete
+  const bool expected = before == T::ARROW || before == T::NUMBER || before == T::PLUS || before == T::MINUS;
+  const std::string word = lower(run);
+  if (!expected) return 0;
+  if (word == "i" && before == T::ARROW) return T::LETTER_I;
+  if (word == "s" && before == T::ARROW) return T::CODE;
+  const std::size_t kind = letter_type(run);
+  return kind == T::AXIS || kind == T::LETTER_C ? kind : 0;
+}
+
+std::size_t WordLexer::online_type(std::string_view run, bool value_follows) const {
+  const std::size_t letter = letter_type(run);
+  const bool variable = letter == T::VAR || letter == T::LETTER_C || letter == T::LETTER_D || letter == T::LETTER_I || letter == T::LETTER_M || letter == T::LETTER_R;
+  if (variable && value_follows) return letter;
+  return find(online_keywords(), run);
+}
+
+std::size_t WordLexer::type_of_run(std::string_view run, bool digit_follows, std::size_t begin) const {
+  const std::size_t end = begin + run.size();
+  const std::size_t next = std::min(text_.find_first_not_of(" \t", end), text_.size());
+  const bool value_follows = digit_follows || (next < text_.size() && text_[next] == '(');
+  if (!in_buffer_ && !line_is_buffered_) return online_type(run, value_follows);
+  const std::size_t keyword = find(buffer_keywords(), run);
+  return keyword ? keyword : letter_type(run);
+}
+
+/// The first run of a word whose every run of letters is a keyword, a letter or an axis; kind 0 otherwise.
+WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const {
+  Word first{0, 0};
+  for (std::size_t at = 0; at < word.size();) {
+    const std::size_t length = run_length(word.substr(at));
+    const bool digit_follows = at + length < word.size();
+    const std::size_t kind = type_of_run(word.substr(at, length), digit_follows, begin + at);
+    if (kind == 0) return at == 0 && length == word.size() ? split_commands(word, begin) : Word{0, 0};
+    if (at == 0) first = {kind, length};
+    at += length;
+    while (at < word.size() && is_digit(word[at])) ++at;
+  }
+  return first;
+}
+
+/// &1qa: command letters glued to an address.
+WordLexer::Word WordLexer::split_commands(std::string_view word, std::size_t begin) const {
+  const bool glued = !in_buffer_ && (last_[0] == T::NUMBER || last_[0] == T::COMMAND || last_[0] == T::STAR) && last_end_ == begin;
+  if (!glued || word.size() > 4) return {0, 0};
+  const auto is_command = [](std::string_view run) { return find(online_keywords(), run) == T::COMMAND; };
+  for (std::size_t at = 0; at < word.size(); ++at)
+    if (!is_command(word.substr(at, 1)) && lower(word.substr(at, 1)) != "j") return {0, 0};
+  return {find(online_keywords(), word.substr(0, 1)), 1};
+}
+
+void WordLexer::declare(std::string_view name) {
+  if (!expect_name_) return;
+  if (declaring_ == Declaring::kGlobal) names_.global.emplace(name);
+  else names_.local.emplace(name);
+  if (declaring_ != Declaring::kParameters) expect_name_ = false;
+}
+
+void WordLexer::follow_declaration(std::size_t kind, std::size_t line) {
+  switch (kind) {
+    case T::GLOBAL: case T::CSGLOBAL: case T::PTR: declaring_ = Declaring::kGlobal; expect_name_ = true; depth_ = 0; return;
+    case T::LOCAL: declaring_ = Declaring::kLocal; expect_name_ = true; depth_ = 0; return;
+    default: break;
+  }
+  const bool opens_parameters = kind == T::LEFT && ((last_[0] == T::NAME && (last_[1] == T::SUBPROG || (last_[1] == T::COLON && last_[2] == T::SUB))) || (last_[0] == T::NUMBER && last_[1] == T::SUBPROG && last_[2] == T::OPEN));
+  if (opens_parameters) { declaring_ = Declaring::kParameters; expect_name_ = true; depth_ = 0; return; }
+  if (declaring_ == Declaring::kNothing) return;
+  const bool ended_by_line = line != last_line_ && last_[0] != T::COMMA && depth_ == 0 && declaring_ != Declaring::kParameters && kind != T::NAME;
+  depth_ += kind == T::LEFT ? 1 : kind == T::RIGHT ? -1 : 0;
+  const bool ended = kind == T::SEMICOLON || ended_by_line || (declaring_ == Declaring::kParameters && depth_ < 0) || kind == T::CLOSE || kind == T::OPEN;
+  if (ended) { declaring_ = Declaring::kNothing; expect_name_ = false; return; }
+  if (kind == T::COMMA && depth_ == 0) expect_name_ = true;
+}
+
+void WordLexer::follow_mode(std::size_t kind, std::size_t line) {
+  if (kind == T::OPEN) in_buffer_ = true;
+  if (kind == T::CLOSE) { in_buffer_ = false; names_.local.clear(); }
+  if (kind == T::CX) { line_is_buffered_ = true; buffered_line_ = line; }
+  const bool motor_arrow = kind == T::ARROW && !in_buffer_ && (last_[0] == T::HASH || (last_[0] == T::NUMBER && last_[1] == T::HASH));
+  if (motor_arrow) { axis_definition_ = true; axis_line_ = line; }
+  else if (axis_definition_ && kind != T::NUMBER && kind != T::AXIS && kind != T::LETTER_C && kind != T::PLUS && kind != T::MINUS) axis_definition_ = false;
+}
+
+void WordLexer::follow(std::size_t kind, std::size_t line) {
+  follow_declaration(kind, line);
+  follow_mode(kind, line);
+  last_[2] = last_[1];
+  last_[1] = last_[0];
+  last_[0] = kind;
+}
+
+const std::vector<std::string_view>& keyword_names() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> list;
+    for (const auto& [word, type] : buffer_keywords()) list.push_back(word);
+    std::sort(list.begin(), list.end());
+    return list;
+  }();
+  return names;
+}
+
+std::string token_name(std::size_t type) { return token_vocabulary().getSymbolicName(type); }
+
+std::string describe_token(std::size_t type) {
+  const auto& vocabulary = token_vocabulary();
+  const std::string literal = vocabulary.getLiteralName(type);
+  if (!literal.empty()) return literal;
+  switch (type) {
+    case T::NUMBER: return "a number";
+    case T::NAME: return "a name";
+    case T::MEMBER: return "an element name";
+    case T::AXIS: case T::LETTER_C: return "an axis";
+    case T::STRING: return "a text in quotation marks";
+    case T::VAR: case T::LETTER_M: return "a variable";
+    case antlr4::Token::EOF: return "the end of the file";
+    default: return "'" + lower(vocabulary.getSymbolicName(type)) + "'";
+  }
+}
+
+}  // namespace pmac::compiler::power_pmac

@@ -1,0 +1,169 @@
+// The program as typed statements and expressions with their places in the source: what both languages are lowered to. Lowering
+// fills everything but the bindings; sema fills those (variable numbers, elements, functions, local numbers) and nothing else.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/bytecode/bytecode.h"
+#include "compiler/source/source.h"
+
+namespace pmac::compiler::ir {
+
+using bytecode::ControlVerb;
+using bytecode::MotionParameter;
+using bytecode::MoveMode;
+using bytecode::VariableClass;
+using bytecode::WordKind;
+using source::Span;
+
+// --- expressions ------------------------------------------------------------------------------------------------------
+
+enum class Operator : std::uint8_t {
+  kAdd, kSub, kMul, kDiv, kMod, kBitAnd, kBitOr, kBitXor, kShiftLeft, kShiftRight,
+  kEqual, kNotEqual, kLess, kGreater, kLessEqual, kGreaterEqual, kNotGreater, kNotLess, kNear, kNotNear,
+  kAnd, kOr,
+  kNegate, kInvert, kNot,
+};
+std::string_view operator_text(Operator op);
+bool is_comparison(Operator op);   // kEqual .. kNotNear
+
+struct Expr;
+using ExprPtr = std::unique_ptr<Expr>;
+
+struct Number { double value = 0; };
+struct Text { std::string value; };
+
+/// P100, P(expr), a declared name, an array element. number: constant part; index: computed part added to it, or null.
+struct Variable {
+  VariableClass variable_class = VariableClass::kP;
+  std::int64_t number = 0;
+  ExprPtr index;
+  std::string name;                // as written where it was a name, else empty
+};
+
+/// Name, Name(arguments): bound by sema to a Variable, a Number or a FunctionCall.
+struct NameUse { std::string name; bool has_arguments = false; std::vector<ExprPtr> arguments; };
+
+/// Motor[1].JogSpeed. pattern has [] for each index; element is bound by sema. address: the form with .a.
+struct Element {
+  std::string pattern;
+  std::vector<ExprPtr> indices;
+  bytecode::ElementId element = bytecode::ElementId::kCount;
+  bool address = false;
+};
+
+struct Unary { Operator op; ExprPtr operand; };
+struct Binary { Operator op; ExprPtr left, right; };
+struct FunctionCall { bytecode::Function function = bytecode::Function::kCount; std::vector<ExprPtr> arguments; };
+
+struct Expr {
+  Span span;
+  std::variant<Number, Text, Variable, NameUse, Element, Unary, Binary, FunctionCall> node;
+};
+
+ExprPtr make_number(double value, Span span);
+
+/// Value of an expression of constants, or nullopt.
+std::optional<double> constant_value(const Expr& expr);
+
+// --- statements ---------------------------------------------------------------------------------------------------------
+
+struct Stmt;
+using StmtPtr = std::unique_ptr<Stmt>;
+using Body = std::vector<StmtPtr>;
+
+struct Block { Body body; };
+struct Assign { ExprPtr target; bytecode::AssignOp op = bytecode::AssignOp::kSet; bool synchronous = false; std::vector<ExprPtr> values; };
+/// I5213,15,100 = 10: count variables from target on, step apart.
+struct AssignSeries { ExprPtr target; std::int64_t count = 0, step = 1; ExprPtr value; };
+struct IfBranch { ExprPtr condition; StmtPtr body; };
+struct If { std::vector<IfBranch> branches; StmtPtr otherwise; };
+struct While { ExprPtr condition; StmtPtr body; };
+struct DoWhile { StmtPtr body; ExprPtr condition; };
+struct Case { ExprPtr value; Span span; std::size_t first = 0; };  // value null: default. first: index into Switch::body
+struct Switch { ExprPtr value; Body body; std::vector<Case> cases; };
+struct Break {};
+struct Continue {};
+struct Label { std::int64_t number = 0; };
+struct LocalDeclaration { std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
+struct Locals { std::vector<LocalDeclaration> names; };
+enum class JumpKind : std::uint8_t { kGoto, kGosub, kCallsub };
+/// label: constant or computed label number; name: of a SUB: routine.
+struct Jump { JumpKind kind = JumpKind::kGoto; ExprPtr label; std::string name; std::vector<ExprPtr> arguments; std::vector<bool> by_reference; };
+struct Call { ExprPtr number; std::string name, routine; Span name_span; std::vector<ExprPtr> arguments; std::vector<bool> by_reference; std::int64_t subprogram = -1, label = -1; };
+struct Return {};
+struct Stop {};
+
+struct SetMode { MoveMode mode = MoveMode::kLinear; };
+struct SetParameter { MotionParameter parameter = MotionParameter::kTa; ExprPtr value; };
+/// abs, inc: axes is a mask; centres: R was in the list.
+struct SetAbsInc { bool absolute = true; std::uint32_t axes = 0; bool centres = false; };
+struct SetFrax { std::uint32_t axes = 0; bool secondary = false; };
+struct SetNormal { ExprPtr vector[3]; };
+struct Word { WordKind kind = WordKind::kTarget; int index = 0; ExprPtr value; Span span; };
+struct Move { std::vector<Word> words; };
+struct Dwell { ExprPtr time_ms; };
+struct Delay { ExprPtr time_ms; };
+
+/// One verb for one thing, or for each of several: see ControlVerb. Missing arguments are nan.
+struct Control { ControlVerb verb = ControlVerb::kAbort; std::vector<ExprPtr> arguments; };
+struct Command { std::string text; };
+struct Send { int port = 0; std::string text; };
+
+// load stream only
+struct AddressCoord { ExprPtr number; };
+struct AddressMotor { ExprPtr number; };
+struct DefineAxis { bytecode::AxisDefinition definition; };
+struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; std::string name; Span name_span; int size = 0; };
+struct GlobalDeclaration { VariableClass variable_class = VariableClass::kP; std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
+struct Globals { std::vector<GlobalDeclaration> names; };
+struct Report { ExprPtr value; std::string name; };
+struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its open ... close stands here
+
+struct Stmt {
+  Span span;
+  std::variant<Block, Assign, AssignSeries, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, SetMode, SetParameter,
+               SetAbsInc, SetFrax, SetNormal, Move, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
+               Globals, Report, OpenBuffer>
+      node;
+};
+
+template <class Node>
+StmtPtr make_stmt(Span span, Node node) { return std::make_unique<Stmt>(Stmt{span, std::move(node)}); }
+
+// --- programs ------------------------------------------------------------------------------------------------------------
+
+struct Parameter { std::string name; bool by_reference = false; Span span; };
+
+/// A SUB: routine of a subprogram.
+struct Routine { std::string name; Span span; std::vector<Parameter> parameters; std::size_t first = 0; std::int64_t label = -1; };
+
+struct Buffer {
+  bytecode::ProgramKind kind = bytecode::ProgramKind::kProg;
+  std::int64_t number = -1;        // -1: to be assigned to its name, or the addressed coordinate system
+  std::string name;
+  Span span;                       // of its open line
+  Span close_span;
+  std::vector<Parameter> parameters;
+  std::vector<Routine> routines;
+  Body body;
+  std::int64_t local_count = 0;    // filled by sema
+};
+
+/// One file, or one on-line text.
+struct Unit {
+  std::vector<Buffer> buffers;
+  Body load;                       // statements of the load stream, in order
+};
+
+// --- text form -------------------------------------------------------------------------------------------------------------
+
+std::string print(const Unit& unit);
+std::string print(const Expr& expr);
+
+}  // namespace pmac::compiler::ir

@@ -1,0 +1,271 @@
+// Expressions: names become variables, constants and function calls; elements are found in the table; types are checked.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "compiler/sema/binder.h"
+
+namespace pmac::compiler::sema {
+namespace {
+
+using ir::Operator;
+using ir::VariableClass;
+
+struct ClassRange { std::string_view letter; std::int64_t count; };
+
+ClassRange range_of(VariableClass variable_class) {
+  switch (variable_class) {
+    case VariableClass::kP: return {"P", bytecode::kPCount};
+    case VariableClass::kQ: return {"Q", bytecode::kQCount};
+    case VariableClass::kM: return {"M", bytecode::kMCount};
+    case VariableClass::kI: return {"I", bytecode::kICount};
+    case VariableClass::kL: return {"L", bytecode::kLCount};
+    case VariableClass::kR: return {"R", bytecode::kMaxOutgoing};
+    case VariableClass::kC: return {"C", bytecode::kCCount};
+    default: return {"D", bytecode::kDCount};
+  }
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+bytecode::Function find_function(std::string_view name) {
+  const std::string wanted = lower(name);
+  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::Function::kCount); ++i)
+    if (bytecode::function_info(static_cast<bytecode::Function>(i)).name == wanted) return static_cast<bytecode::Function>(i);
+  return bytecode::Function::kCount;
+}
+
+/// Functions of the controller that this compiler knows by name only.
+bool is_unsupported_function(std::string_view name) {
+  constexpr std::string_view kNames[] = {"sin_cos", "sincos", "sincosd", "sum", "sumprod", "vcopy", "vmadd", "vscale", "mdet", "minv", "mmadd", "mminor", "mmul",
+                                         "msolve", "mtrans", "tinit", "tdet", "tinv", "tprop", "memcpy", "memset", "sprintf", "strcpy", "strcat", "strcmp",
+                                         "strlen", "strncpy", "strncat", "strncmp", "strtod", "strtolower", "strtoupper", "strstr", "sscanf"};
+  return std::find(std::begin(kNames), std::end(kNames), lower(name)) != std::end(kNames);
+}
+
+std::optional<std::int64_t> number_suffix(std::string_view text) {
+  std::int64_t value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || read.ec != std::errc() || read.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void Binder::bind_value(ir::Expr& expr) {
+  bind_expr(expr);
+  const auto* binary = std::get_if<ir::Binary>(&expr.node);
+  const auto* unary = std::get_if<ir::Unary>(&expr.node);
+  const bool is_condition = (binary && (ir::is_comparison(binary->op) || binary->op == Operator::kAnd || binary->op == Operator::kOr)) || (unary && unary->op == Operator::kNot);
+  if (is_condition) diagnostics_.error("PM3040", expr.span, "a comparison is no number; it stands in the condition of if or while");
+  if (std::holds_alternative<ir::Text>(expr.node)) diagnostics_.error("PM3041", expr.span, "a text is no number");
+}
+
+void Binder::bind_condition(ir::Expr& expr) {
+  if (auto* unary = std::get_if<ir::Unary>(&expr.node); unary && unary->op == Operator::kNot) return bind_condition(*unary->operand);
+  auto* binary = std::get_if<ir::Binary>(&expr.node);
+  if (binary && (binary->op == Operator::kAnd || binary->op == Operator::kOr)) {
+    bind_condition(*binary->left);
+    return bind_condition(*binary->right);
+  }
+  if (binary && ir::is_comparison(binary->op)) {
+    bind_value(*binary->left);
+    return bind_value(*binary->right);
+  }
+  bind_value(expr);
+}
+
+void Binder::bind_target(ir::Expr& expr) {
+  bind_expr(expr);
+  if (is_assignable(expr)) {
+    const auto* element = std::get_if<ir::Element>(&expr.node);
+    if (element && element->element != bytecode::ElementId::kCount) note_stored_element(*element, expr.span);
+    return;
+  }
+  const auto* element = std::get_if<ir::Element>(&expr.node);
+  if (element && element->element == bytecode::ElementId::kCount) return;  // reported
+  if (element && element->address) diagnostics_.error("PM3042", expr.span, "the address of an element cannot be assigned");
+  else if (element && !buffer_ && !settings_.online) diagnostics_.warning("PM6011", expr.span, fmt::format("{} is a status element here; this assignment is left out", bytecode::element_info(element->element).name));
+  else if (element) diagnostics_.error("PM3043", expr.span, fmt::format("{} is a status element; it can only be read", bytecode::element_info(element->element).name));
+  else if (!std::holds_alternative<ir::NameUse>(expr.node)) diagnostics_.error("PM3044", expr.span, "this cannot be assigned");
+}
+
+bool Binder::is_assignable(const ir::Expr& expr) const {
+  if (std::holds_alternative<ir::Variable>(expr.node)) return true;
+  const auto* element = std::get_if<ir::Element>(&expr.node);
+  if (!element || element->element == bytecode::ElementId::kCount || element->address) return false;
+  return bytecode::element_info(element->element).access != bytecode::ElementAccess::kStatus;
+}
+
+void Binder::bind_expr(ir::Expr& expr) {
+  if (auto* variable = std::get_if<ir::Variable>(&expr.node)) return bind_variable(*variable, expr.span);
+  if (std::holds_alternative<ir::NameUse>(expr.node)) return bind_name(expr);
+  if (auto* element = std::get_if<ir::Element>(&expr.node)) return bind_element(*element, expr.span);
+  if (auto* unary = std::get_if<ir::Unary>(&expr.node)) return unary->op == Operator::kNot ? bind_condition(*unary->operand) : bind_value(*unary->operand);
+  if (auto* binary = std::get_if<ir::Binary>(&expr.node)) {
+    const bool logical = binary->op == Operator::kAnd || binary->op == Operator::kOr;
+    logical ? bind_condition(*binary->left) : bind_value(*binary->left);
+    logical ? bind_condition(*binary->right) : bind_value(*binary->right);
+  }
+  if (auto* call = std::get_if<ir::FunctionCall>(&expr.node))
+    for (ir::ExprPtr& argument : call->arguments) bind_value(*argument);
+}
+
+void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
+  if (variable.index) bind_value(*variable.index);
+  const ClassRange range = range_of(variable.variable_class);
+  const bool fits = variable.number >= 0 && variable.number < range.count;
+  if (!fits) {
+    diagnostics_.error("PM3045", span, fmt::format("{} variables are numbered 0 to {}", range.letter, range.count - 1));
+    variable.number = 0;
+  }
+  const bool computed_local = variable.variable_class == VariableClass::kL && variable.index;
+  if (variable.variable_class == VariableClass::kL) highest_local_ = std::max(highest_local_, computed_local ? std::max<std::int64_t>(variable.number, 255) : variable.number);
+}
+
+void Binder::bind_name(ir::Expr& expr) {
+  auto use = std::move(std::get<ir::NameUse>(expr.node));
+  for (ir::ExprPtr& argument : use.arguments) bind_value(*argument);
+  if (const auto local = locals_.find(use.name); local != locals_.end()) return bind_indexed(expr, use, VariableClass::kL, local->second.number, local->second.size);
+  if (bind_declared_name(expr, use)) return;
+  if (!use.has_arguments && bind_kinematic_name(expr, use.name)) return;
+  if (use.has_arguments && bind_function(expr, use)) return;
+  report_unknown(use.name, expr.span, use.has_arguments ? "function or array" : "name");
+  expr.node = std::move(use);
+}
+
+bool Binder::bind_declared_name(ir::Expr& expr, ir::NameUse& use) {
+  const Name* name = project_.names.find(use.name);
+  if (!name) return false;
+  if (const auto variable_class = name->variable_class()) {
+    bind_indexed(expr, use, *variable_class, name->number, name->size);
+    return true;
+  }
+  if (use.has_arguments) return false;
+  expr.node = ir::Number{static_cast<double>(name->number)};
+  return true;
+}
+
+/// A scalar, or an element of an array: first + index.
+void Binder::bind_indexed(ir::Expr& expr, ir::NameUse& use, VariableClass variable_class, std::int64_t first, std::int64_t size) {
+  ir::Variable variable{variable_class, first, nullptr, use.name};
+  if (use.has_arguments && use.arguments.size() != 1) diagnostics_.error("PM3046", expr.span, fmt::format("array '{}' takes one index", use.name));
+  if (use.has_arguments && use.arguments.size() == 1) {
+    const auto constant = ir::constant_value(*use.arguments[0]);
+    if (constant && size > 0 && (*constant < 0 || *constant >= static_cast<double>(size)))
+      diagnostics_.warning("PM3047", use.arguments[0]->span, fmt::format("the array '{}' has the elements 0 to {}", use.name, size - 1));
+    if (constant && std::abs(*constant) < 1e9) variable.number += static_cast<std::int64_t>(*constant);
+    else variable.index = std::move(use.arguments[0]);
+  }
+  expr.node = std::move(variable);
+  bind_variable(std::get<ir::Variable>(expr.node), expr.span);
+}
+
+/// KinPosMotor1, KinAxisUsed and their kind: fixed names of the variables that kinematic routines exchange.
+bool Binder::bind_kinematic_name(ir::Expr& expr, std::string_view name) {
+  const auto make = [&](VariableClass variable_class, std::int64_t number) {
+    expr.node = ir::Variable{variable_class, number, nullptr, std::string(name)};
+    bind_variable(std::get<ir::Variable>(expr.node), expr.span);
+    return true;
+  };
+  const auto after = [&](std::string_view prefix) { return name.starts_with(prefix) ? name.substr(prefix.size()) : std::string_view(); };
+  if (name == "KinAxisUsed" || name == "KinVelEna") return make(VariableClass::kD, 0);
+  if (const auto motor = number_suffix(after("KinPosMotor")); motor && *motor < bytecode::kMaxMotors) return make(VariableClass::kL, *motor);
+  if (const auto motor = number_suffix(after("KinVelMotor")); motor && *motor < bytecode::kMaxMotors) return make(VariableClass::kR, *motor);
+  if (const int axis = bytecode::axis_index_from_name(after("KinPosAxis")); axis >= 0) return make(VariableClass::kC, axis);
+  if (const int axis = bytecode::axis_index_from_name(after("KinVelAxis")); axis >= 0) return make(VariableClass::kC, 32 + axis);
+  if (const int axis = bytecode::axis_index_from_name(after("KinEnaAxis")); axis >= 0) return expr.node = ir::Number{std::ldexp(1.0, axis)}, true;
+  return false;
+}
+
+bool Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
+  if (is_unsupported_function(use.name)) {
+    diagnostics_.error("PM5001", expr.span, fmt::format("the function {} is not supported yet", lower(use.name)));
+    expr.node = ir::Number{0};
+    return true;
+  }
+  const bytecode::Function function = find_function(use.name);
+  if (function == bytecode::Function::kCount) return false;
+  const auto wanted = static_cast<std::size_t>(bytecode::function_info(function).argument_count);
+  if (use.arguments.size() != wanted) {
+    diagnostics_.error("PM3048", expr.span, fmt::format("{} takes {} argument(s), not {}", lower(use.name), wanted, use.arguments.size()));
+    use.arguments.resize(wanted);
+    for (ir::ExprPtr& argument : use.arguments)
+      if (!argument) argument = ir::make_number(0, expr.span);
+  }
+  expr.node = ir::FunctionCall{function, std::move(use.arguments)};
+  return true;
+}
+
+// --- elements ---------------------------------------------------------------------------------------------------------------
+
+void Binder::bind_element(ir::Element& element, const source::Span& span) {
+  for (ir::ExprPtr& index : element.indices) bind_value(*index);
+  element.element = bytecode::find_element(element.pattern);
+  if (element.element == bytecode::ElementId::kCount) return report_unknown_element(element, span);
+  const bytecode::ElementInfo& info = bytecode::element_info(element.element);
+  for (std::size_t i = 0; i < element.indices.size(); ++i) check_element_index(*element.indices[i], info.index_counts[i], info.name);
+}
+
+void Binder::check_element_index(const ir::Expr& index, int count, std::string_view element) {
+  if (const auto value = ir::constant_value(index)) {
+    const bool fits = *value >= 0 && *value < count && *value == std::floor(*value);
+    if (!fits) diagnostics_.error("PM3050", index.span, fmt::format("the index of {} is 0 to {}", element, count - 1));
+    return;
+  }
+  const auto* variable = std::get_if<ir::Variable>(&index.node);
+  const bool one_local = variable && variable->variable_class == VariableClass::kL && !variable->index;
+  if (!one_local) diagnostics_.error("PM3051", index.span, "the index of an element is a constant or one local variable; assign the value to a local first");
+}
+
+void Binder::report_unknown_element(const ir::Element& element, const source::Span& span) {
+  const std::string structure = element.pattern.substr(0, element.pattern.find_first_of(".["));
+  const auto local = locals_.find(structure);
+  const Name* name = project_.names.find(structure);
+  if (local != locals_.end() || (name && name->variable_class())) {
+    diagnostics_.error("PM3052", span, fmt::format("'{}' is an array; its index stands in round brackets: {}(...)", structure, structure));
+    return;
+  }
+  if (!project_.reported_elements.insert(lower(element.pattern)).second) return;
+  std::vector<std::string_view> candidates;
+  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) candidates.push_back(bytecode::element_info(static_cast<bytecode::ElementId>(i)).name);
+  const std::string_view near = source::nearest_word(element.pattern, candidates);
+  const std::string hint = near.empty() ? std::string() : fmt::format("; did you mean {}?", near);
+  diagnostics_.error("PM3053", span, fmt::format("unknown element {}{}", element.pattern, hint));
+}
+
+/// Once for each element, where the program relies on something that the simulation keeps without acting on it.
+void Binder::note_stored_element(const ir::Element& element, const source::Span& span) {
+  if (!settings_.extra_warnings) return;
+  const bytecode::ElementInfo& info = bytecode::element_info(element.element);
+  if (info.simulation != bytecode::ElementSimulation::kStored || !project_.reported_elements.insert(std::string(info.name)).second) return;
+  diagnostics_.warning("PM6010", span, fmt::format("the simulation stores {} and does not act on it", info.name));
+}
+
+void Binder::report_unknown(std::string_view name, const source::Span& span, std::string_view what) {
+  if (diagnostics_.has_errors() && project_.lexed_names.contains(std::string(name))) return;  // its declaration was refused
+  std::vector<std::string_view> candidates;
+  std::string_view other_case = project_.names.find_other_case(name);
+  const auto same = [&](std::string_view other) { return other != name && lower(other) == lower(name); };
+  for (const auto& [local, entry] : locals_) {
+    candidates.push_back(local);
+    if (same(local)) other_case = local;
+  }
+  for (const auto& [global, entry] : project_.names.all()) candidates.push_back(global);
+  const bool is_function = what.starts_with("function");
+  for (std::uint16_t i = 0; is_function && i < static_cast<std::uint16_t>(bytecode::Function::kCount); ++i) candidates.push_back(bytecode::function_info(static_cast<bytecode::Function>(i)).name);
+  const std::string_view near = other_case.empty() ? source::nearest_word(name, candidates) : other_case;
+  std::string hint;
+  if (!other_case.empty()) hint = fmt::format("; '{}' differs only in upper and lower case, which counts in names", other_case);
+  else if (!near.empty()) hint = fmt::format("; did you mean '{}'?", near);
+  auto& error = diagnostics_.error("PM3054", span, fmt::format("{} '{}' is not declared{}", what, name, hint));
+  if (!near.empty()) error.fix = source::FixIt{{span.file, span.begin, static_cast<std::uint32_t>(span.begin + name.size()), span.expansion}, std::string(near)};
+}
+
+}  // namespace pmac::compiler::sema

@@ -1,0 +1,353 @@
+// Second pass: expressions are bound, local variables get their numbers, everything is checked.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "compiler/sema/binder.h"
+
+namespace pmac::compiler::sema {
+namespace {
+
+using bytecode::ProgramKind;
+using bytecode::SymbolKind;
+using ir::ControlVerb;
+
+bool is_plc_verb(ControlVerb verb) { return verb >= ControlVerb::kEnablePlc && verb <= ControlVerb::kStepPlc; }
+
+bool uses_q_of_addressed_coord(const ir::Stmt& statement) {
+  if (const auto* globals = std::get_if<ir::Globals>(&statement.node))
+    return std::any_of(globals->names.begin(), globals->names.end(), [](const auto& name) { return name.variable_class == ir::VariableClass::kQ && name.value; });
+  const auto* assign = std::get_if<ir::Assign>(&statement.node);
+  const auto* variable = assign ? std::get_if<ir::Variable>(&assign->target->node) : nullptr;
+  return variable && variable->variable_class == ir::VariableClass::kQ;
+}
+
+/// Labels of a buffer and the constant jumps to them.
+void check_labels(const ir::Buffer& buffer, const std::vector<std::pair<std::int64_t, source::Span>>& labels, const std::vector<std::pair<std::int64_t, source::Span>>& jumps, source::Diagnostics& diagnostics) {
+  std::map<std::int64_t, source::Span> known;
+  for (const auto& [number, span] : labels) {
+    const auto [at, fresh] = known.emplace(number, span);
+    if (!fresh) diagnostics.error("PM3030", span, fmt::format("label N{} stands here twice", number)).notes.push_back({at->second, "the first one is here"});
+  }
+  for (const ir::Routine& routine : buffer.routines) known.emplace(routine.label, routine.span);
+  for (const auto& [number, span] : jumps) {
+    if (known.contains(number)) continue;
+    diagnostics.error("PM3031", span, fmt::format("this buffer has no label N{}:", number)).notes.push_back({buffer.close_span, "it ends here"});
+  }
+}
+
+}  // namespace
+
+void Binder::bind_body(ir::Body& body) {
+  for (ir::StmtPtr& statement : body) bind_statement(*statement);
+}
+
+void Binder::bind_optional(ir::ExprPtr& expr) {
+  if (expr) bind_value(*expr);
+}
+
+void Binder::bind_statement(ir::Stmt& statement) {
+  std::visit([&](auto& node) { bind(node, statement.span); }, statement.node);
+}
+
+void Binder::bind(ir::Block& node, const source::Span&) { bind_body(node.body); }
+
+void Binder::bind(ir::Assign& node, const source::Span& span) {
+  for (ir::ExprPtr& value : node.values) bind_value(*value);
+  bind_target(*node.target);
+  const auto* variable = std::get_if<ir::Variable>(&node.target->node);
+  const bool listable = variable && node.op == bytecode::AssignOp::kSet && !node.synchronous;
+  if (node.values.size() > 1 && !listable) diagnostics_.error("PM3023", span, "a list of values is assigned with = to variables");
+  const bool no_sync = node.synchronous && variable && (variable->variable_class == ir::VariableClass::kR || variable->variable_class == ir::VariableClass::kC);
+  if (no_sync) diagnostics_.error("PM3024", span, "R and C variables cannot be assigned synchronously; write = instead of ==");
+}
+
+void Binder::bind(ir::AssignSeries& node, const source::Span&) {
+  bind_target(*node.target);
+  bind_value(*node.value);
+}
+
+void Binder::bind(ir::If& node, const source::Span&) {
+  for (ir::IfBranch& branch : node.branches) {
+    bind_condition(*branch.condition);
+    bind_statement(*branch.body);
+  }
+  if (node.otherwise) bind_statement(*node.otherwise);
+}
+
+void Binder::bind(ir::While& node, const source::Span&) {
+  bind_condition(*node.condition);
+  ++loops_;
+  bind_statement(*node.body);
+  --loops_;
+}
+
+void Binder::bind(ir::DoWhile& node, const source::Span&) {
+  ++loops_;
+  bind_statement(*node.body);
+  --loops_;
+  bind_condition(*node.condition);
+}
+
+void Binder::bind(ir::Switch& node, const source::Span&) {
+  bind_value(*node.value);
+  std::set<std::int64_t> seen;
+  for (ir::Case& label : node.cases) {
+    if (!label.value) continue;
+    bind_value(*label.value);
+    const auto value = ir::constant_value(*label.value);
+    if (!value) diagnostics_.error("PM3032", label.span, "the value of a case is a constant");
+    else if (!seen.insert(static_cast<std::int64_t>(std::clamp(*value, -9e15, 9e15))).second) diagnostics_.error("PM3033", label.span, "this case stands here twice");
+  }
+  ++switches_;
+  bind_body(node.body);
+  --switches_;
+}
+
+void Binder::bind(ir::Break&, const source::Span& span) {
+  if (loops_ == 0 && switches_ == 0) diagnostics_.error("PM3034", span, "break stands outside of a loop or switch");
+}
+
+void Binder::bind(ir::Continue&, const source::Span& span) {
+  if (loops_ == 0) diagnostics_.error("PM3034", span, "continue stands outside of a loop");
+}
+
+void Binder::bind(ir::Label& node, const source::Span& span) { labels_.emplace_back(node.number, span); }
+
+void Binder::bind(ir::Locals& node, const source::Span& span) {
+  if (!buffer_) diagnostics_.error("PM3025", span, "local variables belong to a program buffer");
+  for (ir::LocalDeclaration& name : node.names) {
+    bind_optional(name.value);
+    std::int64_t size = 0;
+    if (name.size) {
+      bind_value(*name.size);
+      const auto value = ir::constant_value(*name.size);
+      if (value && *value >= 1 && *value <= bytecode::kLCount) size = static_cast<std::int64_t>(*value);
+      else diagnostics_.error("PM3021", name.size->span, "the size of an array is a constant of at least 1");
+    }
+    name.number = declare_local(name.name, size, name.name_span);
+  }
+}
+
+void Binder::bind(ir::Jump& node, const source::Span& span) {
+  for (ir::ExprPtr& argument : node.arguments) bind_value(*argument);
+  if (node.kind != ir::JumpKind::kCallsub && !node.arguments.empty()) diagnostics_.error("PM3026", span, "only call and callsub take arguments");
+  if (!node.name.empty()) bind_routine_name(node, span);
+  if (!node.label) return;
+  bind_value(*node.label);
+  const auto constant = ir::constant_value(*node.label);
+  if (!constant) return;
+  const bool whole = *constant >= 0 && *constant <= 4294967295.0 && *constant == std::floor(*constant);
+  if (whole) jumps_.emplace_back(static_cast<std::int64_t>(*constant), span);
+  else diagnostics_.error("PM3027", span, "a label is a whole number from 0 to 4294967295");
+}
+
+void Binder::bind_routine_name(ir::Jump& node, const source::Span& span) {
+  if (buffer_) {
+    for (const ir::Routine& routine : buffer_->routines) {
+      if (routine.name != node.name) continue;
+      node.label = ir::make_number(static_cast<double>(routine.label), span);
+      mark_references(node.by_reference, node.arguments, routine.parameters, span, node.name);
+      return;
+    }
+  }
+  diagnostics_.error("PM3028", span, fmt::format("this buffer has no routine '{}'", node.name));
+  node.label = ir::make_number(0, span);
+  jumps_.clear();
+}
+
+void Binder::mark_references(std::vector<bool>& by_reference, std::vector<ir::ExprPtr>& arguments, const std::vector<ir::Parameter>& parameters, const source::Span& span, std::string_view name) {
+  if (arguments.size() != parameters.size())
+    diagnostics_.error("PM3029", span, fmt::format("'{}' takes {} argument(s), not {}", name, parameters.size(), arguments.size()));
+  by_reference.assign(arguments.size(), false);
+  for (std::size_t i = 0; i < std::min(arguments.size(), parameters.size()); ++i) {
+    by_reference[i] = parameters[i].by_reference;
+    if (by_reference[i] && !is_assignable(*arguments[i])) diagnostics_.error("PM3035", arguments[i]->span, fmt::format("'{}' returns a value in this argument, so it must be a variable", name));
+  }
+}
+
+void Binder::bind(ir::Call& node, const source::Span& span) {
+  for (ir::ExprPtr& argument : node.arguments) bind_value(*argument);
+  if (node.arguments.size() > bytecode::kMaxArguments) diagnostics_.error("PM3007", span, fmt::format("a call has at most {} arguments", bytecode::kMaxArguments));
+  if (!node.name.empty()) return bind_named_call(node, span);
+  bind_value(*node.number);
+  const auto constant = ir::constant_value(*node.number);
+  if (!constant) return;
+  if (!(*constant >= 0 && *constant <= 4294967295.0)) return void(diagnostics_.error("PM3027", span, "a subprogram number is from 0 to 4294967295"));
+  const double whole = std::floor(*constant);
+  node.subprogram = static_cast<std::int64_t>(whole);
+  const auto label = static_cast<std::int64_t>(std::llround((*constant - whole) * 1e6));
+  node.label = label > 0 ? label : -1;
+}
+
+void Binder::bind_named_call(ir::Call& node, const source::Span& span) {
+  const Name* name = project_.names.find(node.name);
+  if (!name || name->kind != SymbolKind::kSubprog) {
+    report_unknown(node.name, node.name_span, "subprogram");
+    return;
+  }
+  node.subprogram = name->number;
+  if (node.routine.empty()) return mark_references(node.by_reference, node.arguments, name->parameters, span, node.name);
+  const auto routine = name->routines.find(node.routine);
+  if (routine == name->routines.end()) {
+    diagnostics_.error("PM3028", node.name_span, fmt::format("subprogram '{}' has no routine '{}'", node.name, node.routine));
+    return;
+  }
+  node.label = routine->second.label;
+  mark_references(node.by_reference, node.arguments, routine->second.parameters, span, node.routine);
+}
+
+void Binder::bind(ir::SetParameter& node, const source::Span&) { bind_value(*node.value); }
+void Binder::bind(ir::SetNormal& node, const source::Span&) { for (ir::ExprPtr& component : node.vector) bind_value(*component); }
+void Binder::bind(ir::Move& node, const source::Span& span) {
+  const bool kinematic = buffer_ && (buffer_->kind == ProgramKind::kForward || buffer_->kind == ProgramKind::kInverse);
+  if (kinematic) diagnostics_.error("PM4006", span, "a kinematic routine cannot command moves");
+  for (ir::Word& word : node.words) bind_value(*word.value);
+}
+void Binder::bind(ir::Dwell& node, const source::Span&) { bind_value(*node.time_ms); }
+void Binder::bind(ir::Delay& node, const source::Span&) { bind_value(*node.time_ms); }
+
+void Binder::bind(ir::Control& node, const source::Span&) {
+  const bool names_program = node.verb == ControlVerb::kBegin || node.verb == ControlVerb::kStart;
+  for (std::size_t i = 0; i < node.arguments.size(); ++i) {
+    ir::ExprPtr& argument = node.arguments[i];
+    if (!argument) continue;
+    auto* use = std::get_if<ir::NameUse>(&argument->node);
+    if (use && is_plc_verb(node.verb)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
+    else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
+    else bind_value(*argument);
+  }
+  check_control_number(node);
+}
+
+void Binder::check_control_number(const ir::Control& node) {
+  if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset) return;
+  const auto value = ir::constant_value(*node.arguments[0]);
+  if (!value) return;
+  const bool motor = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;
+  const int most = (is_plc_verb(node.verb) ? bytecode::kMaxPlcs : motor ? bytecode::kMaxMotors : bytecode::kMaxCoords) - 1;
+  const bool fits = *value >= 0 && *value <= most && *value == std::floor(*value);
+  const char* thing = is_plc_verb(node.verb) ? "PLC program" : motor ? "motor" : "coordinate system";
+  if (!fits) diagnostics_.error("PM3009", node.arguments[0]->span, fmt::format("the number of a {} is 0 to {}", thing, most));
+}
+
+void Binder::bind_program_name(ir::Expr& expr, SymbolKind kind, std::string_view what) {
+  const std::string text = std::get<ir::NameUse>(expr.node).name;
+  const Name* name = project_.names.find(text);
+  if (name && name->kind == kind) {
+    expr.node = ir::Number{static_cast<double>(name->number)};
+    return;
+  }
+  report_unknown(text, expr.span, what);
+  expr.node = ir::Number{0};
+}
+
+void Binder::bind(ir::AddressCoord& node, const source::Span&) {
+  project_.addressed_coord = static_cast<std::int64_t>(ir::constant_value(*node.number).value_or(1));
+}
+void Binder::bind(ir::AddressMotor&, const source::Span&) {}
+
+void Binder::bind(ir::DefineAxis& node, const source::Span&) {
+  project_.has_axis_definitions = true;
+  project_.uses_inverse_kinematics |= node.definition.kind == bytecode::AxisDefinitionKind::kInverseKinematics;
+  for (const bytecode::AxisTerm& term : node.definition.terms) project_.defined_axes.insert(term.axis);
+}
+
+void Binder::bind(ir::DefinePointer& node, const source::Span& span) {
+  if (node.size < 0) {
+    const Name* name = project_.names.find(node.name);
+    if (name && name->kind == SymbolKind::kPointer) node.definition.first_m = node.definition.last_m = static_cast<std::int32_t>(name->number);
+    else report_unknown(node.name, node.name_span, "pointer");
+    node.definition.first_m = node.definition.last_m = std::max(node.definition.first_m, 0);
+  }
+  if (!node.element) return;
+  bind_value(*node.element);
+  const auto* element = std::get_if<ir::Element>(&node.element->node);
+  const bool constant = element && !element->address && std::all_of(element->indices.begin(), element->indices.end(), [](const ir::ExprPtr& i) { return ir::constant_value(*i).has_value(); });
+  if (!constant) diagnostics_.error("PM3004", span, "a pointer points at an I/O address or at an element with constant indices");
+}
+
+void Binder::bind(ir::Globals& node, const source::Span& span) {
+  for (ir::GlobalDeclaration& name : node.names) {
+    bind_optional(name.value);
+    if (buffer_ && name.value) diagnostics_.error("PM3036", span, "a global variable that is declared inside a buffer cannot be given a value there");
+  }
+}
+
+void Binder::bind(ir::Report& node, const source::Span&) { bind_value(*node.value); }
+
+// --- buffers --------------------------------------------------------------------------------------------------------------
+
+void Binder::begin_buffer(ir::Buffer& buffer) {
+  buffer_ = &buffer;
+  labels_.clear();
+  jumps_.clear();
+  highest_local_ = -1;
+  begin_routine(buffer.parameters);
+}
+
+void Binder::begin_routine(const std::vector<ir::Parameter>& parameters) {
+  const bool kinematic = buffer_->kind == ProgramKind::kForward || buffer_->kind == ProgramKind::kInverse;
+  locals_.clear();
+  next_local_ = kinematic ? bytecode::kFirstKinematicLocal : 0;
+  if (kinematic) highest_local_ = bytecode::kFirstKinematicLocal - 1;
+  for (const ir::Parameter& parameter : parameters) declare_local(parameter.name, 0, parameter.span);
+}
+
+std::int64_t Binder::declare_local(const std::string& name, std::int64_t size, const source::Span& span) {
+  const std::int64_t room = std::max<std::int64_t>(size, 1);
+  if (next_local_ + room > bytecode::kLCount) {
+    diagnostics_.error("PM3020", span, fmt::format("no local variables are left for '{}'", name));
+    return 0;
+  }
+  const auto [at, fresh] = locals_.emplace(name, Local{next_local_, size, span});
+  if (!fresh) diagnostics_.error("PM3037", span, fmt::format("local '{}' is declared twice", name)).notes.push_back({at->second.span, "the first declaration is here"});
+  next_local_ += room;
+  highest_local_ = std::max(highest_local_, next_local_ - 1);
+  return at->second.number;
+}
+
+void Binder::bind_buffer(ir::Buffer& buffer) {
+  begin_buffer(buffer);
+  if (buffer.number < 0) resolve_addressed(buffer);
+  std::size_t next_routine = 0;
+  for (std::size_t i = 0; i <= buffer.body.size(); ++i) {
+    for (; next_routine < buffer.routines.size() && buffer.routines[next_routine].first == i; ++next_routine) begin_routine(buffer.routines[next_routine].parameters);
+    if (i < buffer.body.size()) bind_statement(*buffer.body[i]);
+  }
+  check_labels(buffer, labels_, jumps_, diagnostics_);
+  check_motion(buffer.body, diagnostics_);
+  buffer.local_count = highest_local_ + 1;
+  buffer_ = nullptr;
+  locals_.clear();
+}
+
+/// open forward without a number belongs to the addressed coordinate system.
+void Binder::resolve_addressed(ir::Buffer& buffer) {
+  buffer.number = std::max<std::int64_t>(project_.addressed_coord, 0);
+  if (project_.addressed_coord >= 0) return;
+  diagnostics_.warning("PM6001", buffer.span, "no coordinate system is addressed; taking 1 (write &1 before it)");
+  buffer.number = 1;
+}
+
+void check(ir::Unit& unit, Project& project, const Settings& settings, source::Diagnostics& diagnostics) {
+  Binder binder(project, settings, diagnostics);
+  for (std::size_t i = 0; i < unit.load.size(); ++i) {
+    if (const auto* open = std::get_if<ir::OpenBuffer>(&unit.load[i]->node)) {
+      binder.bind_buffer(unit.buffers[open->buffer]);
+      continue;
+    }
+    binder.bind_statement(*unit.load[i]);
+    const bool needs_coord = project.addressed_coord < 0 && !settings.online && uses_q_of_addressed_coord(*unit.load[i]);
+    if (!needs_coord) continue;
+    const source::Span span = unit.load[i]->span;
+    diagnostics.warning("PM6002", span, "this sets a variable of the addressed coordinate system, but none is addressed; taking 1 (write &1 before it)");
+    project.addressed_coord = 1;
+    unit.load.insert(unit.load.begin() + static_cast<std::ptrdiff_t>(i), ir::make_stmt(span, ir::AddressCoord{ir::make_number(1, span)}));
+    ++i;
+  }
+}
+
+}  // namespace pmac::compiler::sema

@@ -1,0 +1,90 @@
+// The stages of the compiler, one after the other.
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "compiler/codegen/codegen.h"
+#include "compiler/compiler.h"
+#include "compiler/frontend/power_pmac/frontend.h"
+#include "compiler/ir/ir.h"
+#include "compiler/sema/sema.h"
+#include "compiler/session_state.h"
+
+namespace pmac::compiler {
+namespace {
+
+/// The number and text that the controller answers a refused on-line command with, by the code of our diagnostic.
+std::string_view controller_error(std::string_view code) {
+  struct Row { std::string_view prefix, text; };
+  constexpr Row kRows[] = {
+      {"PM3002", "error #25: INVALID NUMBER"},     {"PM3005", "error #26: INVALID RANGE"},      {"PM3009", "error #23: OUT OF RANGE NUMBER"},
+      {"PM3045", "error #23: OUT OF RANGE NUMBER"}, {"PM3050", "error #23: OUT OF RANGE NUMBER"}, {"PM3031", "error #35: INVALID LABEL"},
+      {"PM3028", "error #35: INVALID LABEL"},       {"PM3004", "error #21: ILLEGAL PARAMETER"},   {"PM3012", "error #21: ILLEGAL PARAMETER"},
+      {"PM3013", "error #21: ILLEGAL PARAMETER"},   {"PM2", "error #20: ILLEGAL CMD"},            {"PM5", "error #20: ILLEGAL CMD"},
+      {"PM", "error #31: COMPILE ERR"}};
+  for (const Row& row : kRows)
+    if (code.starts_with(row.prefix)) return row.text;
+  return "error #20: ILLEGAL CMD";
+}
+
+/// Text outside of buffers that is no command is #20 to the controller, whatever we call it.
+std::string_view online_error(const source::Diagnostic& diagnostic, bool in_buffer) {
+  const bool unknown_name = diagnostic.code == "PM3054" || diagnostic.code == "PM3053";
+  return unknown_name && !in_buffer ? "error #20: ILLEGAL CMD" : controller_error(diagnostic.code);
+}
+
+}  // namespace
+
+Session::Session(Options options) : state_(std::make_unique<State>(std::move(options))) {}
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+
+std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& files, bool online) {
+  std::vector<ir::Unit> units;
+  for (const InputFile& file : files) units.push_back(frontend.read(file.name, file.text));
+  for (const std::string& name : frontend.known_names()) project.lexed_names.insert(name);
+  for (ir::Unit& unit : units) sema::declare(unit, project, diagnostics);
+  const sema::Settings settings{options.extra_warnings, online};
+  for (ir::Unit& unit : units) sema::check(unit, project, settings, diagnostics);
+  if (!online) sema::check_served_axes(units, project, diagnostics);
+  return units;
+}
+
+std::optional<bytecode::Module> Session::State::generate(const std::vector<ir::Unit>& units) {
+  if (diagnostics.has_errors()) return std::nullopt;
+  bytecode::Module module = codegen::generate(units, project.names, sources, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
+  if (const std::string problem = bytecode::verify(module); !problem.empty()) throw std::logic_error("the compiler made a module that is not valid: " + problem);
+  return module;
+}
+
+std::optional<bytecode::Module> Session::compile(const std::vector<InputFile>& files) {
+  return state_->generate(state_->analyse(files, false));
+}
+
+std::optional<bytecode::Module> Session::compile_online(std::string_view text, std::string_view name) {
+  source::Diagnostics earlier = std::move(state_->diagnostics);
+  state_->diagnostics = source::Diagnostics();
+  std::optional<bytecode::Module> module = state_->generate(state_->analyse({{std::string(name), std::string(text)}}, true));
+  const bool in_buffer = text.find("open") != std::string_view::npos;
+  std::vector<source::Diagnostic> found = state_->diagnostics.take();
+  state_->diagnostics = std::move(earlier);
+  for (source::Diagnostic& diagnostic : found) {
+    if (diagnostic.severity == source::Severity::kError) diagnostic.message = fmt::format("{}: {}", online_error(diagnostic, in_buffer), diagnostic.message);
+    state_->diagnostics.report(std::move(diagnostic));
+  }
+  return module;
+}
+
+void Session::adopt(const bytecode::Module& module) {
+  for (const bytecode::Symbol& symbol : module.symbols) {
+    state_->project.names.adopt(symbol);
+    if (symbol.kind == bytecode::SymbolKind::kMacro) state_->frontend.define(symbol.name, symbol.text);
+    else state_->frontend.know_name(symbol.name);
+  }
+}
+
+source::Diagnostics& Session::diagnostics() { return state_->diagnostics; }
+const source::SourceManager& Session::sources() const { return state_->sources; }
+
+}  // namespace pmac::compiler

@@ -1,0 +1,28 @@
+// What a session keeps between calls; private to this folder.
+#pragma once
+
+#include "compiler/compiler.h"
+#include "compiler/frontend/power_pmac/frontend.h"
+#include "compiler/ir/ir.h"
+#include "compiler/sema/sema.h"
+
+namespace pmac::compiler {
+
+struct Session::State {
+  explicit State(Options o) : options(std::move(o)), frontend(sources, diagnostics, options.include_dirs) {
+    for (const auto& [name, text] : options.defines) frontend.define(name, text);
+  }
+
+  /// Front end and sema: checked IR; what is wrong is in diagnostics.
+  std::vector<ir::Unit> analyse(const std::vector<InputFile>& files, bool online);
+  /// nullopt when there are errors.
+  std::optional<bytecode::Module> generate(const std::vector<ir::Unit>& units);
+
+  Options options;
+  source::SourceManager sources;
+  source::Diagnostics diagnostics;
+  power_pmac::Frontend frontend;
+  sema::Project project;
+};
+
+}  // namespace pmac::compiler

@@ -1,0 +1,119 @@
+#include "compiler/source/source.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace pmac::source {
+
+Span join(const Span& first, const Span& last) {
+  if (!first.valid()) return last;
+  if (first.file != last.file || last.end < first.begin) return first;
+  Span joined = first;
+  joined.end = std::max(first.end, last.end);
+  if (first.begin != last.begin) joined.expansion = -1;
+  return joined;
+}
+
+std::int32_t SourceManager::add_file(std::string name, std::string text, Span included_from) {
+  File file{std::move(name), std::move(text), included_from, {0}};
+  for (std::size_t i = 0; i < file.text.size(); ++i)
+    if (file.text[i] == '\n') file.line_starts.push_back(static_cast<std::uint32_t>(i + 1));
+  files_.push_back(std::move(file));
+  return static_cast<std::int32_t>(files_.size() - 1);
+}
+
+std::int32_t SourceManager::add_expansion(std::string macro, Span definition) {
+  expansions_.push_back({std::move(macro), definition});
+  return static_cast<std::int32_t>(expansions_.size() - 1);
+}
+
+LineColumn SourceManager::line_column(std::int32_t file_index, std::uint32_t offset) const {
+  const auto& starts = file(file_index).line_starts;
+  const auto next = std::upper_bound(starts.begin(), starts.end(), offset);
+  const auto line = static_cast<int>(next - starts.begin());
+  return {line, static_cast<int>(offset - starts[static_cast<std::size_t>(line - 1)]) + 1};
+}
+
+std::string_view SourceManager::line_text(std::int32_t file_index, int line) const {
+  const File& source = file(file_index);
+  const std::uint32_t begin = source.line_starts[static_cast<std::size_t>(line - 1)];
+  const auto end = source.text.find_first_of("\r\n", begin);
+  return std::string_view(source.text).substr(begin, end == std::string::npos ? end : end - begin);
+}
+
+std::string_view SourceManager::text(const Span& span) const {
+  if (!span.valid()) return {};
+  const std::string_view whole = file(span.file).text;
+  if (span.begin > whole.size()) return {};
+  return whole.substr(span.begin, span.end - span.begin);
+}
+
+Diagnostic& Diagnostics::report(Diagnostic diagnostic) {
+  if (warnings_are_errors_ && diagnostic.severity == Severity::kWarning) diagnostic.severity = Severity::kError;
+  const bool repeated = diagnostic.span.valid() && !seen_.insert({diagnostic.span.file, diagnostic.span.begin, diagnostic.code + diagnostic.message}).second;
+  const bool is_error = diagnostic.severity == Severity::kError;
+  const bool over_limit = is_error && error_count_ >= error_limit_;
+  if (repeated || over_limit) {
+    dropped_count_ += over_limit && !repeated;
+    ignored_ = std::move(diagnostic);
+    return ignored_;
+  }
+  error_count_ += is_error;
+  warning_count_ += diagnostic.severity == Severity::kWarning;
+  all_.push_back(std::move(diagnostic));
+  return all_.back();
+}
+
+Diagnostic& Diagnostics::error(std::string code, Span span, std::string message) {
+  return report({Severity::kError, std::move(code), span, std::move(message), {}, {}});
+}
+
+Diagnostic& Diagnostics::warning(std::string code, Span span, std::string message) {
+  return report({Severity::kWarning, std::move(code), span, std::move(message), {}, {}});
+}
+
+std::vector<Diagnostic> Diagnostics::take() {
+  std::vector<Diagnostic> taken(std::make_move_iterator(all_.begin()), std::make_move_iterator(all_.end()));
+  all_.clear();
+  seen_.clear();
+  error_count_ = warning_count_ = dropped_count_ = 0;
+  return taken;
+}
+
+namespace {
+
+char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+/// Levenshtein distance with swapped neighbours as one step, case ignored.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0u : 1u)});
+      const bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before = last;
+    last = row;
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates) {
+  std::string_view best;
+  if (word.size() > 100) return best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string_view candidate : candidates) {
+    if (candidate.size() + best_distance < word.size() || word.size() + best_distance < candidate.size()) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) best_distance = distance, best = candidate;
+  }
+  return best;
+}
+
+}  // namespace pmac::source

@@ -1,0 +1,113 @@
+// Source text and what is said about it. A SourceManager owns the files and remembers macro expansions; a Span names a
+// piece of text; a Diagnostic is one message with its place, notes and an optional repair. Only format.h prints.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+namespace pmac::source {
+
+/// Bytes [begin, end) of a file. Where the text came out of a macro, this is the use of the macro in the file, and
+/// expansion says where in its definition the text stands.
+struct Span {
+  std::int32_t file = -1;  // -1: no place
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+  std::int32_t expansion = -1;
+  bool valid() const { return file >= 0; }
+  bool operator==(const Span&) const = default;
+};
+
+/// From the begin of first to the end of last; first alone where they lie in different files.
+Span join(const Span& first, const Span& last);
+
+/// Line and column count from 1; the column counts bytes.
+struct LineColumn { int line = 0; int column = 0; };
+
+/// Text that a macro put in place: the macro, and the span inside its definition (of no file for -D and built-in macros).
+struct Expansion { std::string macro; Span definition; };
+
+struct File {
+  std::string name;
+  std::string text;
+  Span included_from;                      // no place for a file of the command line
+  std::vector<std::uint32_t> line_starts;  // byte offset of each line
+};
+
+class SourceManager {
+ public:
+  /// Takes a file in; CR LF and a byte-order mark stay as they are. Returns its index.
+  std::int32_t add_file(std::string name, std::string text, Span included_from = {});
+  std::int32_t add_expansion(std::string macro, Span definition);
+
+  const File& file(std::int32_t index) const { return files_[static_cast<std::size_t>(index)]; }
+  std::size_t file_count() const { return files_.size(); }
+  const Expansion& expansion(std::int32_t index) const { return expansions_[static_cast<std::size_t>(index)]; }
+
+  LineColumn line_column(std::int32_t file, std::uint32_t offset) const;
+  /// Text of a line without its line end.
+  std::string_view line_text(std::int32_t file, int line) const;
+  std::string_view text(const Span& span) const;
+
+ private:
+  std::deque<File> files_;  // views into a file stay good
+  std::vector<Expansion> expansions_;
+};
+
+enum class Severity : std::uint8_t { kNote, kWarning, kError };
+
+struct Note { Span span; std::string message; };
+
+/// Replace the text of span; an empty span inserts.
+struct FixIt { Span span; std::string replacement; };
+
+struct Diagnostic {
+  Severity severity = Severity::kError;
+  std::string code;     // "PM1203": never changes its meaning
+  Span span;
+  std::string message;
+  std::vector<Note> notes;
+  std::optional<FixIt> fix;
+};
+
+/// Collects diagnostics in the order they are found; drops repetitions at the same place and errors beyond the limit.
+class Diagnostics {
+ public:
+  Diagnostic& report(Diagnostic diagnostic);
+  Diagnostic& error(std::string code, Span span, std::string message);
+  Diagnostic& warning(std::string code, Span span, std::string message);
+
+  bool has_errors() const { return error_count_ > 0; }
+  std::size_t error_count() const { return error_count_; }
+  std::size_t warning_count() const { return warning_count_; }
+  /// Errors that were not kept because the limit was reached.
+  std::size_t dropped_count() const { return dropped_count_; }
+  void set_error_limit(std::size_t limit) { error_limit_ = limit; }
+  /// From now on warnings are reported as errors.
+  void set_warnings_are_errors(bool on) { warnings_are_errors_ = on; }
+  const std::deque<Diagnostic>& all() const { return all_; }
+  /// Hands over what was collected and starts again with none.
+  std::vector<Diagnostic> take();
+
+ private:
+  std::deque<Diagnostic> all_;
+  std::set<std::tuple<std::int32_t, std::uint32_t, std::string>> seen_;  // file, offset, code and message
+  Diagnostic ignored_;
+  std::size_t error_count_ = 0;
+  std::size_t warning_count_ = 0;
+  std::size_t dropped_count_ = 0;
+  std::size_t error_limit_ = 100;
+  bool warnings_are_errors_ = false;
+};
+
+/// The candidate nearest to a misspelt word, case ignored, or empty if none is near.
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
+
+}  // namespace pmac::source

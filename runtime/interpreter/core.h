@@ -1,0 +1,76 @@
+// The machinery behind Thread::run(): one InterpreterCore lives for the length of one run() and works on verified code only.
+// The dispatch loop (core.cpp) keeps the program counter and the register window in local variables; whatever needs more
+// than a few machine instructions is a member here and reads the place from the thread.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "runtime/interpreter/interpreter.h"
+
+namespace pmac::runtime {
+
+inline constexpr std::size_t kMaxCallDepth = 255;  // Users Manual p662
+
+class InterpreterCore {
+ public:
+  InterpreterCore(Thread& thread, Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit)
+      : thread_(thread), host_(host), budget_(clamp_budget(instruction_budget)),
+        jump_back_limit_(jump_back_limit > 0 ? jump_back_limit : std::numeric_limits<std::int64_t>::max()) {}
+
+  RunResult run();
+
+ private:
+  using Instruction = bytecode::Instruction;
+
+  /// What the dispatch loop does after a member has worked.
+  enum class Next { kContinue, kEnter, kLeave };
+
+  // core.cpp
+  void dispatch();
+  const bytecode::Program& program() const { return *thread_.program_.program; }
+  double* registers() const { return thread_.stack_.data() + thread_.base_; }
+  std::size_t register_count() const { return program().frame_size + program().outgoing_count; }
+  Next after(Flow flow);
+  void end(RunStop stop) { result_.stop = stop; }
+  Next end_program();
+  Next fault(std::string detail);
+  Next raise(Fault fault);
+  bool host_failed();
+
+  // core_access.cpp: variables and elements by computed number. False, or kLeave: a fault has been raised.
+  bool variable(bytecode::VariableClass variable_class, double number, int& index);
+  bool load_indexed(const Instruction& in, double* r);
+  bool store_indexed(const Instruction& in, double* r);
+  bool resolve(const bytecode::ElementRef& ref, const double* r, ElementAddress& address);
+  bool load_element(const Instruction& in, double* r);
+  Next store_element(const Instruction& in, const double* r);
+  Next sync_store(const Instruction& in, const double* r);
+  double read_variable(bytecode::VariableClass variable_class, int index, const double* r);
+  void write_variable(bytecode::VariableClass variable_class, int index, double value, double* r);
+
+  // core_calls.cpp: leave and enter frames; the thread holds the place afterwards.
+  bool find_label(double number, std::uint32_t& pc);
+  bool push_frame();
+  void open_frame(const bytecode::Program& caller, const bytecode::Program& routine);
+  Next gosub(std::uint32_t target);
+  Next callsub(std::uint32_t target);
+  Next call(double subprogram, std::int64_t label);
+  Next call_constant(const Instruction& in);
+  Next call_computed(double target);
+  Next return_from_routine();
+
+  static std::int64_t clamp_budget(std::uint64_t budget) {
+    const auto most = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    return static_cast<std::int64_t>(budget < most ? budget : most);
+  }
+
+  Thread& thread_;
+  Host& host_;
+  std::int64_t budget_;
+  std::int64_t jump_back_limit_;
+  RunResult result_;
+};
+
+}  // namespace pmac::runtime

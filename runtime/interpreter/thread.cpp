@@ -1,0 +1,42 @@
+#include "runtime/interpreter/core.h"
+
+namespace pmac::runtime {
+
+Thread::Thread(double* p_variables, double* q_variables) : p(p_variables), q(q_variables) {}
+
+bool Thread::begin(ProgramHandle program, std::int64_t label) {
+  top_ = program;
+  const bytecode::Program& code = *program.program;
+  stack_.assign(std::size_t{code.frame_size} + code.outgoing_count, 0.0);
+  return stand_at_top(label);
+}
+
+bool Thread::restart() { return top_ && stand_at_top(-1); }
+
+bool Thread::stand_at_top(std::int64_t label) {
+  program_ = top_;
+  frames_.clear();
+  base_ = 0;
+  jump_backs_ = 0;
+  host_fault_.reset();
+  const bytecode::LabelEntry* entry = label < 0 ? nullptr : bytecode::find_label(*program_.program, label);
+  pc_ = entry == nullptr ? 0 : entry->pc;
+  return label < 0 || entry != nullptr;
+}
+
+RunResult Thread::run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit) {
+  return InterpreterCore(*this, host, instruction_budget, jump_back_limit).run();
+}
+
+bytecode::SourceLine Thread::source() const {
+  return program_ ? bytecode::source_of(*program_.program, pc_) : bytecode::SourceLine{};
+}
+
+double& Thread::local(int i) { return stack_[base_ + static_cast<std::size_t>(i)]; }
+
+double& Thread::outgoing(int i) {
+  const ProgramHandle& running = program_ ? program_ : top_;
+  return stack_[base_ + running.program->frame_size + static_cast<std::size_t>(i)];
+}
+
+}  // namespace pmac::runtime
