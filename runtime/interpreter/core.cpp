@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "compiler/bytecode/operators.h"
+#include "runtime/interpreter/fuse.h"
 
 #if defined(__GNUC__)
 #define PMAC_COMPUTED_GOTO 1
@@ -111,6 +112,7 @@ InterpreterCore::Next InterpreterCore::after(Flow flow) {
       COUNT_RUN();                 \
       LEAVE();                     \
     }                              \
+    q = thread_.q;                 \
     NEXT();                        \
   } while (false)
 #define CALL_MEMBER(expression)                      \
@@ -147,7 +149,7 @@ void InterpreterCore::dispatch() {
   const double* constants = nullptr;
   double* r = nullptr;
   double* const p = thread_.p;
-  double* const q = thread_.q;
+  double* q = thread_.q;
   std::int64_t budget = budget_;
   std::uint32_t label_pc = 0;
   ENTER();
@@ -158,8 +160,16 @@ void InterpreterCore::dispatch() {
 #define OPCODE(Name, text, format, meaning) &&body_##Name,
 #include "compiler/bytecode/opcode.def"
 #undef OPCODE
+#define FUSED2(A, B) &&body_##A##B,
+#define FUSED3(A, B, C) &&body_##A##B##C,
+#define FUSED4(A, B, C, D) &&body_##A##B##C##D,
+#include "runtime/interpreter/fused.def"
+#undef FUSED2
+#undef FUSED3
+#undef FUSED4
   };
 #define OP(Name) body_##Name
+#define FUSED_OP(Name) body_##Name
 #define DISPATCH() goto* kBodies[static_cast<std::size_t>(pc->op)]
 #define NEXT()  \
   do {          \
@@ -169,6 +179,7 @@ void InterpreterCore::dispatch() {
   DISPATCH();
 #else
 #define OP(Name) case Opcode::k##Name
+#define FUSED_OP(Name) case static_cast<Opcode>(FusedOpcode::k##Name)
 #define DISPATCH() goto dispatch_next
 #define NEXT()  \
   do {          \
@@ -270,6 +281,8 @@ dispatch_next:
   ONLINE(DefinePointer);
   ONLINE(InstallProgram);
   ONLINE(Report);
+
+#include "runtime/interpreter/core_fused.inc"
 
 #if !PMAC_COMPUTED_GOTO
   }

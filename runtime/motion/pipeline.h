@@ -76,6 +76,8 @@ class Pipeline {
 
   /// Timings that have become final since the last call, in order of id; then forgets them. Appends to out.
   void take_timings(std::vector<MoveTiming>& out);
+  /// The same for the times of synchronous assignments, which are known earlier.
+  void take_sync_times(std::vector<SyncTime>& out);
 
  private:
   struct State;

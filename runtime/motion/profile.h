@@ -33,6 +33,7 @@ class MotorProfile {
   double target_mu() const;   // position at the end; the present one for a jog without end
 
  private:
+  friend class ProfileBuilder;
   struct Piece { double start_ms; double position, velocity, half_accel, sixth_jerk; };  // cubic in t - start_ms
   std::array<Piece, 16> pieces_{};
   int count_ = 0;

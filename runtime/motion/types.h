@@ -94,4 +94,7 @@ struct MoveTiming {
   double length_uu = 0;                 // along the path, over the axes that counted for the feed rate; 0 for a delay
 };
 
+/// The synchronous assignments of a command are due; known as soon as the blend into it is committed, before its end is.
+struct SyncTime { std::uint64_t id = 0; double time_ms = 0; };
+
 }  // namespace pmac::motion

@@ -1,0 +1,155 @@
+// One coordinate system: its axis definitions, its modes, the motion program it executes, and the pipeline that turns its moves into
+// motor positions. It decides when the program calculates on (ahead of motion) and when it waits (dwell, rapid, jump-back rule).
+//
+//   idle --run--> calculating <--> waiting for room (enough moves ahead)
+//                     |  dwell, rapid, loop without moves, end
+//                     v
+//                 coming to rest --> dwelling | rapid move | next interrupt | idle
+//
+// Source: calculation ahead of motion, User's Manual p681-706; see docs/motion.md.
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kinematics/kinematics.h"
+#include "runtime/coordinate/modal.h"
+#include "runtime/machine.h"
+#include "runtime/motion/pipeline.h"
+#include "runtime/runner.h"
+
+namespace pmac::runtime {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// A synchronous assignment in the queue. element_address belongs to target.element where the class is kElement.
+struct SyncEntry {
+  bytecode::SyncTarget target;
+  ElementAddress element;
+  double value = 0;
+  std::uint64_t move_id = 0;   // executed when this move, dwell or delay starts
+  bytecode::SourceLine source;
+};
+
+class CoordSystem {
+ public:
+  CoordSystem(Machine::State& machine, int number);
+  ~CoordSystem();
+
+  // --- set-up -------------------------------------------------------------------------------------------------------
+  /// Applies an axis definition to a motor. Answers a refusal, or empty.
+  std::string define(const bytecode::AxisDefinition& definition, int motor);
+  const kinematics::AxisMap& map() const { return map_; }
+  const std::vector<int>& motors() const { return motors_; }
+  ProgramHandle forward, inverse;
+  int lookahead_buffer = 0;    // segments of define lookahead
+  ModalState modal;
+  std::vector<double> q;
+
+  // --- program control; each answers a refusal ("error #22: ...") or empty -----------------------------------------------
+  std::string begin(std::uint32_t number, std::int64_t label);
+  std::string run(double time_ms);
+  void abort(double time_ms);
+  /// A run-time error: aborts, sets ErrorStatus and reports.
+  void fail(double time_ms, Fault fault);
+  bool program_running() const { return phase_ != Phase::kIdle; }
+  bool executes(const bytecode::Program* program) const;
+  const Runner& runner() const { return runner_; }
+  bool dwelling() const { return phase_ == Phase::kDwelling; }
+
+  // --- what the program asks for (called by the host) ---------------------------------------------------------------------
+  Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
+  Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
+  void stop_program_from_inside() { stop_requested_ = true; }
+
+  // --- time ---------------------------------------------------------------------------------------------------------------
+  /// Next time at which service() has something to do; kNever if none.
+  double next_event_ms() const;
+  /// Does everything that is due at time_ms.
+  void service(double time_ms);
+  /// Motors that follow the pipeline: row i of position_mu gets count samples from start_ms on.
+  bool on_path() const { return on_path_; }
+  void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
+  const std::vector<int>& path_motors() const { return path_map_.motors; }
+
+  // --- positions -----------------------------------------------------------------------------------------------------------
+  /// pmatch: axis positions from the motors' commanded positions. Answers a refusal or empty.
+  std::string match_positions(double time_ms);
+  bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu);
+  /// Positions of served_motors(), through the inverse routine where there is one.
+  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
+  std::vector<int> served_motors() { return motor_map().motors; }
+  std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
+  const AxisVector& calculated_position() const { return calculated_uu_; }
+  AxisVector commanded_position(double time_ms);
+  void observe(motion::StageObservers observers);
+
+ private:
+  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid };
+  enum class AfterRest { kContinue, kDwell, kRapid, kNextInterrupt, kEnd };
+
+  // program.cpp
+  void calculate(double time_ms);
+  bool enough_ahead(double time_ms) const;
+  std::optional<Fault> come_to_rest(double time_ms, AfterRest then);
+  void at_rest(double time_ms);
+  void settle_path(double time_ms);
+  void finish_program();
+  Flow end_block(Thread& thread);
+  Flow start_blendable(Thread& thread, motion::MotionCommand command);
+  Flow stop_item(Thread& thread, AfterRest then);
+  Flow give_up(Thread& thread, Fault fault);
+  void ensure_sequence(double time_ms);
+  void start_dwell(double time_ms);
+  void start_rapid(double time_ms);
+  void collect_timings();
+  void perform_due(double time_ms);
+  void perform_up_to(std::uint64_t move_id);
+  void record(const MoveRecord& move);
+  motion::PipelineConfig config();
+  motion::MotorMap motor_map();
+
+  // positions.cpp
+  std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
+  std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu);
+
+  Machine::State& machine_;
+  int number_;
+  std::vector<kinematics::MotorDefinition> definitions_;
+  kinematics::AxisMap map_;
+  std::vector<int> motors_;
+  std::uint32_t forward_axes_ = 0;
+  Runner runner_, kinematics_;
+  ProgramHandle pointed_;
+  std::int64_t pointed_label_ = -1;
+
+  Phase phase_ = Phase::kIdle;
+  AfterRest after_rest_ = AfterRest::kContinue;
+  double resume_ms_ = kNever;       // when service() acts
+  bool stop_requested_ = false;
+
+  motion::Pipeline pipeline_;
+  motion::MotorMap path_map_;
+  motion::StageObservers observers_;
+  bool on_path_ = false;
+  double sampled_to_ms_ = 0;
+  AxisVector calculated_uu_{};
+  OpenBlock block_;
+  double dwell_ms_ = 0;
+  bytecode::SourceLine item_source_;
+  AxisVector rapid_target_uu_{};
+  double item_start_ms_ = 0;
+
+  std::uint64_t next_id_ = 1;
+  struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };
+  std::deque<PendingMove> pending_moves_;
+  std::vector<motion::MoveTiming> timings_;
+  std::deque<SyncEntry> sync_;
+  std::vector<motion::SyncTime> sync_times_;
+  std::deque<motion::SyncTime> due_;   // ascending
+};
+
+}  // namespace pmac::runtime

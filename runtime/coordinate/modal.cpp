@@ -1,0 +1,133 @@
+// From modes and words to a motion command. Source: User's Manual p665-743; the order rule of ta/td is inferred from published
+// examples that set td after every ta.
+#include "runtime/coordinate/modal.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ElementId;
+using bytecode::MotionParameter;
+using bytecode::MoveMode;
+using bytecode::WordKind;
+
+bool is_circle(MoveMode mode) { return mode >= MoveMode::kCircle1 && mode <= MoveMode::kCircle4; }
+
+void fill_circle(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu, motion::MotionCommand& command) {
+  command.clockwise = modal.mode == MoveMode::kCircle1 || modal.mode == MoveMode::kCircle3;
+  command.second_set = modal.mode == MoveMode::kCircle3 || modal.mode == MoveMode::kCircle4;
+  command.normal = modal.normal;
+  command.has_radius = block.has_radius;
+  command.radius_uu = block.radius;
+  const int first_word = command.second_set ? 3 : 0;
+  const int first_axis = command.second_set ? bytecode::axis_index_from_name("XX") : bytecode::axis_index_from_name("X");
+  for (int i = 0; i < 3; ++i) {
+    if (!(block.center_words >> (first_word + i) & 1u)) continue;
+    command.has_center = true;
+    const double word = block.center[first_word + i];
+    command.center_uu[i] = modal.absolute_center ? word - from_uu[first_axis + i] : word;
+  }
+}
+
+void fill_times(const ElementStore& e, unsigned cs, motion::MotionCommand& command) {
+  command.ta_ms = e.get(ElementId::kCoordTa, cs);
+  command.td_ms = e.get(ElementId::kCoordTd, cs);
+  command.ts_ms = e.get(ElementId::kCoordTs, cs);
+  command.tsd_ms = e.get(ElementId::kCoordTsd, cs);
+  const double tm = e.get(ElementId::kCoordTm, cs);
+  if (tm < 0) command.feed_uu = -tm;
+  else command.move_time_ms = tm;
+  command.feed_time_ms = e.get(ElementId::kCoordFeedTime, cs);
+  command.alt_feed_uu = e.get(ElementId::kCoordAltFeedRate, cs);
+  command.inverse_time = e.get(ElementId::kCoordInvTimeMode, cs) != 0;
+}
+
+ElementId element_of(MotionParameter parameter) {
+  switch (parameter) {
+    case MotionParameter::kTa: return ElementId::kCoordTa;
+    case MotionParameter::kTd: return ElementId::kCoordTd;
+    case MotionParameter::kTs: return ElementId::kCoordTs;
+    case MotionParameter::kTsd: return ElementId::kCoordTsd;
+    case MotionParameter::kTm:
+    case MotionParameter::kFeed: return ElementId::kCoordTm;
+    default: return ElementId::kCount;
+  }
+}
+
+}  // namespace
+
+void OpenBlock::add(WordKind kind, int index, double word) {
+  switch (kind) {
+    case WordKind::kTarget: axes |= 1u << index; value[index] = word; break;
+    case WordKind::kVelocity: velocity_axes |= 1u << index; break;
+    case WordKind::kTriggerDistance: trigger_axes |= 1u << index; break;
+    case WordKind::kCenter: center_words |= 1u << index; center[index] = word; break;
+    case WordKind::kRadius: has_radius = true; radius = word; break;
+    case WordKind::kCount: break;
+  }
+}
+
+AxisVector block_target(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu) {
+  AxisVector target = from_uu;
+  for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
+    if (!(block.axes >> axis & 1u)) continue;
+    target[axis] = modal.absolute_axes >> axis & 1u ? block.value[axis] : from_uu[axis] + block.value[axis];
+  }
+  return target;
+}
+
+std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block, bytecode::SourceLine source) {
+  for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+    if (block.axes >> axis & 1u && !std::isfinite(block.value[axis]))
+      return Fault{FaultKind::kBadTarget, source,
+                   fmt::format("the target of axis {} is {}, not a finite number; check for a division by zero",
+                               bytecode::axis_name(axis), block.value[axis])};
+  for (int word = 0; word < 6; ++word)
+    if (block.center_words >> word & 1u && !std::isfinite(block.center[word]))
+      return Fault{FaultKind::kBadTarget, source, "a centre word (I, J, K) is not a finite number"};
+  if (block.has_radius && !std::isfinite(block.radius))
+    return Fault{FaultKind::kBadTarget, source, "the radius word R is not a finite number"};
+  if (block.trigger_axes != 0)
+    return Fault{FaultKind::kNotSimulated, source, "move-until-trigger (^) is not simulated"};
+  if (modal.mode == MoveMode::kPvt || modal.mode == MoveMode::kSpline)
+    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} moves are not simulated", move_mode_name(modal.mode))};
+  if (!is_circle(modal.mode) && (block.center_words != 0 || block.has_radius))
+    return Fault{FaultKind::kMoveType, source, "centre or radius words outside circle mode; program circle1 or circle2 before"};
+  return std::nullopt;
+}
+
+motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu,
+                                    const ElementStore& elements, int coord, bytecode::SourceLine source) {
+  motion::MotionCommand command;
+  command.kind = is_circle(modal.mode) ? motion::CommandKind::kCircle : motion::CommandKind::kLinear;
+  command.source = source;
+  command.axes = block.axes;
+  command.target_uu = block_target(modal, block, from_uu);
+  command.feed_axes = modal.feed_axes;
+  if (is_circle(modal.mode)) fill_circle(modal, block, from_uu, command);
+  fill_times(elements, static_cast<unsigned>(coord), command);
+  return command;
+}
+
+std::optional<Fault> set_motion_parameter(MotionParameter parameter, double value, ElementStore& elements, int coord,
+                                          bytecode::SourceLine source) {
+  const auto cs = static_cast<unsigned>(coord);
+  const ElementId id = element_of(parameter);
+  if (id == ElementId::kCount)
+    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} is not simulated", motion_parameter_name(parameter))};
+  if (!std::isfinite(value))
+    return Fault{FaultKind::kBadTarget, source, fmt::format("{} is {}, not a finite number", motion_parameter_name(parameter), value)};
+  if (parameter == MotionParameter::kFeed && value <= 0)
+    return Fault{FaultKind::kBadTarget, source, fmt::format("the feed rate F is {}; it must be positive", value)};
+  if (parameter == MotionParameter::kTm && value < 0)
+    return Fault{FaultKind::kBadTarget, source, fmt::format("the move time tm is {} ms; it must not be negative", value)};
+  elements.set(id, parameter == MotionParameter::kFeed ? -value : value, cs);
+  if (parameter == MotionParameter::kTa) elements.set(ElementId::kCoordTd, value, cs);
+  if (parameter == MotionParameter::kTs) elements.set(ElementId::kCoordTsd, value, cs);
+  return std::nullopt;
+}
+
+}  // namespace pmac::runtime

@@ -1,0 +1,364 @@
+// Executing a motion program: how far it calculates ahead of motion, where it waits, and the times at which moves, dwells and
+// synchronous assignments happen. Source: User's Manual p681-706 and the jump-back rule; times are exact, not rounded to servo
+// ticks: what follows a dwell starts at the dwell's own end.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/state.h"
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ElementId;
+using bytecode::MoveMode;
+using bytecode::Opcode;
+
+constexpr std::uint64_t kPassBudget = 1'000'000;  // instructions of one calculation pass
+constexpr int kMaxStepsAtOneTime = 10'000;        // dwells of no length and the like, before time has to go on
+
+}  // namespace
+
+Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> r) {
+  const auto mask = static_cast<std::uint32_t>(instruction.imm);
+  switch (instruction.op) {
+    case Opcode::kSetMode: modal.mode = static_cast<MoveMode>(instruction.a); return Flow::kContinue;
+    case Opcode::kSetAbs:
+      modal.absolute_axes |= mask;
+      if (instruction.a == 1) modal.absolute_center = true;
+      return Flow::kContinue;
+    case Opcode::kSetInc:
+      modal.absolute_axes &= ~mask;
+      if (instruction.a == 1) modal.absolute_center = false;
+      return Flow::kContinue;
+    case Opcode::kSetFrax:
+      if (instruction.a == 1) return give_up(thread, {FaultKind::kNotSimulated, thread.source(), "frax2 is not simulated"});
+      modal.feed_axes = mask;
+      return Flow::kContinue;
+    case Opcode::kSetNormal:
+      modal.normal = {r[instruction.a], r[instruction.a + 1u], r[instruction.a + 2u]};
+      if (!(std::hypot(modal.normal[0], modal.normal[1], modal.normal[2]) > 0))
+        return give_up(thread, {FaultKind::kBadTarget, thread.source(), "the plane normal has no direction"});
+      return Flow::kContinue;
+    case Opcode::kSetMotion:
+      if (auto fault = set_motion_parameter(static_cast<bytecode::MotionParameter>(instruction.b()), r[instruction.a],
+                                            machine_.elements, number_, thread.source()))
+        return give_up(thread, *fault);
+      return Flow::kContinue;
+    case Opcode::kAxisWord:
+      block_.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), r[instruction.a]);
+      return Flow::kContinue;
+    case Opcode::kBlockEnd: return end_block(thread);
+    case Opcode::kDwell:
+    case Opcode::kDelay: {
+      const double ms = r[instruction.a];
+      if (!std::isfinite(ms) || ms < 0)
+        return give_up(thread, {FaultKind::kBadTarget, thread.source(), fmt::format("a wait of {} ms is not possible", ms)});
+      thread.reset_jump_backs();
+      if (instruction.op == Opcode::kDwell) {
+        dwell_ms_ = ms;
+        return stop_item(thread, AfterRest::kDwell);
+      }
+      motion::MotionCommand command = block_command(modal, {}, calculated_uu_, machine_.elements, number_, thread.source());
+      command.kind = motion::CommandKind::kDelay;
+      command.feed_uu = 0;
+      command.move_time_ms = ms;
+      return start_blendable(thread, command);
+    }
+    default: return give_up(thread, {FaultKind::kNotSimulated, thread.source(), "this motion statement is not simulated"});
+  }
+}
+
+Flow CoordSystem::give_up(Thread& thread, Fault fault) {
+  thread.set_host_fault(std::move(fault));
+  return Flow::kFault;
+}
+
+Flow CoordSystem::end_block(Thread& thread) {
+  const OpenBlock block = std::exchange(block_, {});
+  thread.reset_jump_backs();
+  if (auto fault = check_block(modal, block, thread.source())) return give_up(thread, *fault);
+  if (modal.mode == MoveMode::kRapid) {
+    rapid_target_uu_ = block_target(modal, block, calculated_uu_);
+    return stop_item(thread, AfterRest::kRapid);
+  }
+  return start_blendable(thread, block_command(modal, block, calculated_uu_, machine_.elements, number_, thread.source()));
+}
+
+Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
+  item_source_ = thread.source();
+  if (auto fault = come_to_rest(machine_.now_ms, then)) return give_up(thread, std::move(*fault));
+  return Flow::kSuspend;
+}
+
+Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command) {
+  const auto cs = static_cast<unsigned>(number_);
+  ensure_sequence(machine_.now_ms);
+  command.id = next_id_;
+  command.no_blend = machine_.elements.get(ElementId::kCoordNoBlend, cs) != 0 || machine_.elements.get(ElementId::kCoordOnceNoBlend, cs) != 0;
+  machine_.elements.set(ElementId::kCoordOnceNoBlend, 0, cs);
+  if (machine_.options.observers.motion_command) machine_.options.observers.motion_command(number_, command);
+  if (auto fault = pipeline_.add(command)) return give_up(thread, *fault);
+  ++next_id_;
+  calculated_uu_ = pipeline_.calculated_position();
+  const bool delay = command.kind == motion::CommandKind::kDelay;
+  pending_moves_.push_back({command.id, delay ? "delay" : move_mode_name(modal.mode), command.source});
+  collect_timings();
+  if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
+  resume_ms_ = machine_.next_rti_ms(machine_.now_ms);
+  return Flow::kSuspend;
+}
+
+/// Opens the pipeline for a new sequence that starts now.
+void CoordSystem::ensure_sequence(double time_ms) {
+  if (on_path_) return;
+  motion::PipelineConfig set_up = config();
+  path_map_ = set_up.map;
+  pipeline_.reset(set_up, calculated_uu_, time_ms);
+  on_path_ = true;
+  sampled_to_ms_ = time_ms;
+  for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
+}
+
+motion::PipelineConfig CoordSystem::config() {
+  const ElementStore& e = machine_.elements;
+  const auto cs = static_cast<unsigned>(number_);
+  motion::PipelineConfig c;
+  c.segment_time_ms = e.get(ElementId::kCoordSegMoveTime, cs);
+  c.fine = machine_.options.fine;
+  c.ramp_rule = machine_.options.ramp_rule;
+  c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
+  c.lookahead = c.segment_time_ms > 0 && c.lookahead_segments > 1 && lookahead_buffer > 0;
+  c.limit_jerk = machine_.options.limit_jerk;
+  c.radius_error_limit_uu = e.get(ElementId::kCoordRadiusErrorLimit, cs);
+  c.min_arc_len = e.get(ElementId::kCoordMinArcLen, cs);
+  c.max_circle_accel = e.get(ElementId::kCoordMaxCirAccel, cs);
+  c.max_feed_uu = e.get(ElementId::kCoordMaxFeedRate, cs);
+  c.corner_blend_bp = e.get(ElementId::kCoordCornerBlendBp, cs);
+  c.map = motor_map();
+  for (int motor : c.map.motors) {
+    const auto n = static_cast<unsigned>(motor);
+    c.limits.push_back({e.get(ElementId::kMotorMaxSpeed, n), e.get(ElementId::kMotorInvAmax, n),
+                        e.get(ElementId::kMotorInvDmax, n), e.get(ElementId::kMotorInvJmax, n)});
+    c.jerk_limit_unsegmented = c.jerk_limit_unsegmented || e.assigned(ElementId::kMotorInvJmax, n);
+  }
+  return c;
+}
+
+bool CoordSystem::enough_ahead(double time_ms) const {
+  const ElementStore& e = machine_.elements;
+  const auto cs = static_cast<unsigned>(number_);
+  if (pipeline_.horizon_ms() < machine_.next_rti_ms(time_ms)) return false;
+  if (e.get(ElementId::kCoordSegMoveTime, cs) <= 0) return pipeline_.commands_ahead(time_ms) >= 2;
+  if (e.get(ElementId::kCoordLHDistance, cs) > 1 && lookahead_buffer > 0) return !pipeline_.wants_more_segments(time_ms);
+  return pipeline_.commands_ahead(time_ms) >= 1;
+}
+
+// --- time ---------------------------------------------------------------------------------------------------------------
+
+double CoordSystem::next_event_ms() const {
+  const double due = due_.empty() || sync_.empty() ? kNever : due_.front().time_ms;
+  return std::min(resume_ms_, due);
+}
+
+void CoordSystem::service(double time_ms) {
+  perform_due(time_ms);
+  for (int steps = 0; resume_ms_ <= time_ms; ++steps) {
+    if (steps == kMaxStepsAtOneTime) {
+      resume_ms_ = machine_.next_rti_ms(time_ms);
+      return;
+    }
+    switch (phase_) {
+      case Phase::kIdle: resume_ms_ = kNever; break;
+      case Phase::kCalculating: calculate(time_ms); break;
+      case Phase::kToRest: at_rest(time_ms); break;
+      case Phase::kDwelling:
+        record({"dwell", item_source_, number_, -1, item_start_ms_, time_ms, 0});
+        calculate(time_ms);
+        break;
+      case Phase::kRapid: {
+        for (int motor : motors_) machine_.motors[static_cast<std::size_t>(motor)].settle(time_ms);
+        calculate(time_ms);
+        break;
+      }
+    }
+  }
+}
+
+void CoordSystem::calculate(double time_ms) {
+  phase_ = Phase::kCalculating;
+  if (on_path_) {
+    collect_timings();
+    if (enough_ahead(time_ms)) {
+      resume_ms_ = machine_.next_rti_ms(time_ms);
+      return;
+    }
+  }
+  const auto go_back = static_cast<std::int64_t>(machine_.elements.get(ElementId::kCoordGoBack, static_cast<unsigned>(number_)));
+  RunResult result = runner_.thread.run(*machine_.host, kPassBudget, std::max<std::int64_t>(go_back, 0) + 2);
+  machine_.instructions += result.instructions;
+  if (!program_running()) return;
+  if (stop_requested_) {
+    stop_requested_ = false;
+    abort(time_ms);
+    return;
+  }
+  runner_.thread.reset_jump_backs();
+  std::optional<Fault> fault;
+  switch (result.stop) {
+    case RunStop::kSuspended: return;  // motion() has set what to wait for
+    case RunStop::kBudget:
+    case RunStop::kJumpBack: fault = come_to_rest(time_ms, AfterRest::kNextInterrupt); break;
+    case RunStop::kEnded: fault = come_to_rest(time_ms, AfterRest::kEnd); break;
+    case RunStop::kFault: fault = std::move(result.fault); break;
+  }
+  if (fault) fail(time_ms, std::move(*fault));
+}
+
+/// Ends blending; `then` happens when the motors have come to rest.
+std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
+  if (on_path_) {
+    if (auto fault = pipeline_.end_sequence()) return fault;
+    collect_timings();
+  } else if (then == AfterRest::kNextInterrupt) {
+    phase_ = Phase::kCalculating;
+    resume_ms_ = machine_.next_rti_ms(time_ms);
+    return std::nullopt;
+  }
+  phase_ = Phase::kToRest;
+  after_rest_ = then;
+  resume_ms_ = on_path_ ? std::max(time_ms, pipeline_.end_ms()) : time_ms;
+  return std::nullopt;
+}
+
+void CoordSystem::at_rest(double time_ms) {
+  settle_path(time_ms);
+  switch (after_rest_) {
+    case AfterRest::kContinue: calculate(time_ms); break;
+    case AfterRest::kDwell: start_dwell(time_ms); break;
+    case AfterRest::kRapid: start_rapid(time_ms); break;
+    case AfterRest::kNextInterrupt:
+      phase_ = Phase::kCalculating;
+      resume_ms_ = machine_.rti_at_or_after_ms(time_ms);
+      break;
+    case AfterRest::kEnd: finish_program(); break;
+  }
+}
+
+void CoordSystem::settle_path(double time_ms) {
+  if (!on_path_) return;
+  collect_timings();
+  perform_due(time_ms);
+  std::vector<double> position(path_map_.motors.size());
+  pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
+  for (std::size_t i = 0; i < position.size(); ++i)
+    machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].rest(pipeline_.end_ms(), position[i]);
+  on_path_ = false;
+}
+
+void CoordSystem::finish_program() {
+  phase_ = Phase::kIdle;
+  resume_ms_ = kNever;
+  sync_.clear();
+  due_.clear();
+  runner_.thread.stop();
+}
+
+void CoordSystem::start_dwell(double time_ms) {
+  perform_up_to(next_id_++);
+  item_start_ms_ = time_ms;
+  phase_ = Phase::kDwelling;
+  resume_ms_ = time_ms + dwell_ms_;
+}
+
+void CoordSystem::start_rapid(double time_ms) {
+  const motion::MotorMap map = motor_map();
+  std::vector<double> target(map.motors.size());
+  if (auto fault = motors_from_axes(rapid_target_uu_, target.data(), item_source_)) return fail(time_ms, std::move(*fault));
+  perform_up_to(next_id_++);
+  const ElementStore& e = machine_.elements;
+  const bool equal_times = e.get(ElementId::kCoordRapidVelCtrl, static_cast<unsigned>(number_)) != 0;
+  double longest_ms = 0;
+  std::vector<motion::JogParameters> parameters;
+  for (std::size_t i = 0; i < map.motors.size(); ++i) {
+    const auto n = static_cast<unsigned>(map.motors[i]);
+    const bool at_max = e.get(ElementId::kMotorRapidSpeedSel, n) != 0;
+    parameters.push_back({e.get(at_max ? ElementId::kMotorMaxSpeed : ElementId::kMotorJogSpeed, n), e.get(ElementId::kMotorJogTa, n),
+                          e.get(ElementId::kMotorJogTs, n)});
+    const double distance = target[i] - machine_.motors[n].position_at(time_ms);
+    longest_ms = std::max(longest_ms, motion::move_time_ms(distance, parameters[i]));
+  }
+  for (std::size_t i = 0; i < map.motors.size(); ++i) {
+    Motor& m = machine_.motors[static_cast<std::size_t>(map.motors[i])];
+    const double from = m.position_at(time_ms);
+    if (from == target[i]) continue;
+    m.follow(equal_times ? motion::MotorProfile::move_in_time(time_ms, from, target[i], longest_ms, parameters[i])
+                         : motion::MotorProfile::move(time_ms, from, 0, target[i], parameters[i]));
+  }
+  double length2 = 0;
+  for (std::size_t axis = 0; axis < rapid_target_uu_.size(); ++axis)
+    length2 += (rapid_target_uu_[axis] - calculated_uu_[axis]) * (rapid_target_uu_[axis] - calculated_uu_[axis]);
+  calculated_uu_ = rapid_target_uu_;
+  item_start_ms_ = time_ms;
+  record({"rapid", item_source_, number_, -1, time_ms, time_ms + longest_ms, std::sqrt(length2)});
+  phase_ = Phase::kRapid;
+  resume_ms_ = time_ms + longest_ms;
+}
+
+void CoordSystem::sample(double start_ms, double period_ms, int count, std::span<double> position_mu) {
+  pipeline_.sample(start_ms, period_ms, count, position_mu, {});
+  sampled_to_ms_ = start_ms + (count - 1) * period_ms;
+  for (std::size_t i = 0; i < path_map_.motors.size(); ++i)
+    machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].position_mu = position_mu[(i + 1) * static_cast<std::size_t>(count) - 1];
+}
+
+// --- records and synchronous assignments ----------------------------------------------------------------------------------
+
+void CoordSystem::record(const MoveRecord& move) {
+  if (machine_.options.observers.move) machine_.options.observers.move(move);
+}
+
+void CoordSystem::collect_timings() {
+  timings_.clear();
+  pipeline_.take_timings(timings_);
+  sync_times_.clear();
+  pipeline_.take_sync_times(sync_times_);
+  due_.insert(due_.end(), sync_times_.begin(), sync_times_.end());
+  for (const motion::MoveTiming& timing : timings_) {
+    while (!pending_moves_.empty() && pending_moves_.front().id <= timing.id) {
+      const PendingMove& move = pending_moves_.front();
+      if (move.id == timing.id)
+        record({move.mode, move.source, number_, -1, timing.start_ms, timing.end_ms, timing.length_uu});
+      pending_moves_.pop_front();
+    }
+  }
+  if (sync_.empty()) due_.clear();
+}
+
+void CoordSystem::perform_due(double time_ms) {
+  while (!due_.empty() && due_.front().time_ms <= time_ms) {
+    perform_up_to(due_.front().id);
+    if (!due_.empty()) due_.pop_front();
+  }
+}
+
+void CoordSystem::perform_up_to(std::uint64_t move_id) {
+  while (!sync_.empty() && sync_.front().move_id <= move_id) {
+    const SyncEntry entry = sync_.front();
+    sync_.pop_front();
+    machine_.perform(entry, *this);
+  }
+}
+
+Flow CoordSystem::queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value) {
+  const double capacity = machine_.elements.get(ElementId::kCoordSyncOps, static_cast<unsigned>(number_));
+  if (static_cast<double>(sync_.size()) >= capacity)
+    return give_up(thread, {FaultKind::kSyncBuffer, thread.source(),
+                            fmt::format("more than Coord[{}].SyncOps = {} synchronous assignments wait", number_, capacity)});
+  sync_.push_back({target, element, value, next_id_, thread.source()});
+  return Flow::kContinue;
+}
+
+}  // namespace pmac::runtime

@@ -1,0 +1,192 @@
+// An .npz file is a ZIP archive with one .npy file per array. The arrays are columns, the data arrive as rows, and the number
+// of rows is known only at the end. So rows are transposed in blocks; full blocks wait in a scratch file, laid out
+//
+//     block 0: column 0, column 1, ...   block 1: column 0, ...
+//
+// and finish() copies column by column into the archive. Every entry is stored (not compressed) with 64-bit sizes, as
+// numpy.savez itself writes it. Formats: PKWARE APPNOTE 6.3, numpy.lib.format 1.0.
+#include "runtime/gather/npz_writer.h"
+
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "runtime/gather/crc32.h"
+
+namespace pmac::runtime {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the arrays are written as they are in memory, as <f8");
+
+constexpr std::size_t kBlockRows = 32768;
+
+/// Little-endian fields of a ZIP record.
+class Record {
+ public:
+  std::vector<std::uint8_t> bytes;
+  Record& u16(std::uint64_t value) { return put(value, 2); }
+  Record& u32(std::uint64_t value) { return put(value, 4); }
+  Record& u64(std::uint64_t value) { return put(value, 8); }
+  Record& text(std::string_view value) {
+    bytes.insert(bytes.end(), value.begin(), value.end());
+    return *this;
+  }
+
+ private:
+  Record& put(std::uint64_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+    return *this;
+  }
+};
+
+constexpr std::uint32_t kIn64Bits = 0xffffffffu;  // "see the ZIP64 field"
+constexpr std::uint32_t kDate = 0x21;             // 1980-01-01: same rows, same bytes
+constexpr std::size_t kCrcOffset = 14;            // in a local header
+
+struct Entry {
+  std::string name;
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;
+  std::uint32_t crc = 0;
+};
+
+Record local_header(const Entry& entry) {
+  Record record;
+  record.u32(0x04034b50).u16(45).u16(0x800).u16(0).u16(0).u16(kDate).u32(entry.crc).u32(kIn64Bits).u32(kIn64Bits);
+  record.u16(entry.name.size()).u16(20).text(entry.name);
+  record.u16(1).u16(16).u64(entry.size).u64(entry.size);
+  return record;
+}
+
+Record central_header(const Entry& entry) {
+  Record record;
+  record.u32(0x02014b50).u16(45).u16(45).u16(0x800).u16(0).u16(0).u16(kDate).u32(entry.crc).u32(kIn64Bits).u32(kIn64Bits);
+  record.u16(entry.name.size()).u16(28).u16(0).u16(0).u16(0).u32(0).u32(kIn64Bits).text(entry.name);
+  record.u16(1).u16(24).u64(entry.size).u64(entry.size).u64(entry.offset);
+  return record;
+}
+
+/// The three records after the central directory, which begins at `start`.
+Record end_records(std::uint64_t entries, std::uint64_t start, std::uint64_t size) {
+  Record record;
+  record.u32(0x06064b50).u64(44).u16(45).u16(45).u32(0).u32(0).u64(entries).u64(entries).u64(size).u64(start);
+  record.u32(0x07064b50).u32(0).u64(start + size).u32(1);
+  const std::uint64_t shown_entries = entries < 0xffff ? entries : 0xffff;
+  record.u32(0x06054b50).u16(0).u16(0).u16(shown_entries).u16(shown_entries).u32(kIn64Bits).u32(kIn64Bits).u16(0);
+  return record;
+}
+
+/// Header of a .npy file with `rows` doubles, a multiple of 64 bytes long.
+Record npy_header(std::uint64_t rows) {
+  std::string dictionary = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(rows) + ",), }";
+  dictionary.resize((10 + dictionary.size() + 1 + 63) / 64 * 64 - 11, ' ');
+  Record record;
+  record.text("\x93NUMPY").u16(1).u16(dictionary.size() + 1).text(dictionary).text("\n");
+  return record;
+}
+
+class NpzWriter : public TableWriter {
+ public:
+  NpzWriter(const std::string& path, std::vector<std::string> columns)
+      : path_(path), file_(path), columns_(std::move(columns)), block_(columns_.size() * kBlockRows) {
+    if (!file_.is_seekable()) throw OutputError("cannot write " + path + ": an .npz archive needs a file");
+  }
+  ~NpzWriter() override {
+    if (scratch_ != nullptr) std::fclose(scratch_);
+  }
+  NpzWriter(const NpzWriter&) = delete;
+  NpzWriter& operator=(const NpzWriter&) = delete;
+
+  void append(std::span<const double> rows) override;
+  void finish() override;
+
+ private:
+  double* column_of_block(std::size_t column) { return block_.data() + column * kBlockRows; }
+  void spill();
+  Entry write_column(std::size_t column);
+  std::uint32_t copy_column(std::size_t column, std::uint32_t crc);
+  std::span<const std::uint8_t> spilled(std::uint64_t block, std::size_t column);
+
+  std::string path_;
+  OutputFile file_;
+  std::vector<std::string> columns_;
+  std::vector<double> block_;       // [column][row]
+  std::size_t block_rows_ = 0;
+  std::uint64_t spilled_blocks_ = 0;
+  std::FILE* scratch_ = nullptr;
+  std::vector<std::uint8_t> read_back_;
+};
+
+void NpzWriter::append(std::span<const double> rows) {
+  const std::size_t width = columns_.size();
+  for (std::size_t first = 0; first + width <= rows.size(); first += width) {
+    if (block_rows_ == kBlockRows) spill();
+    for (std::size_t column = 0; column < width; ++column) column_of_block(column)[block_rows_] = rows[first + column];
+    ++block_rows_;
+  }
+}
+
+void NpzWriter::spill() {
+  if (scratch_ == nullptr) scratch_ = std::tmpfile();
+  const bool written = scratch_ != nullptr && std::fwrite(block_.data(), sizeof(double), block_.size(), scratch_) == block_.size();
+  if (!written) throw OutputError("cannot write the temporary data of " + path_ + ": " + std::strerror(errno));
+  ++spilled_blocks_;
+  block_rows_ = 0;
+}
+
+std::span<const std::uint8_t> NpzWriter::spilled(std::uint64_t block, std::size_t column) {
+  read_back_.resize(kBlockRows * sizeof(double));
+  const std::uint64_t offset = (block * columns_.size() + column) * read_back_.size();
+  std::size_t done = 0;
+  while (done < read_back_.size()) {
+    const ::ssize_t count = ::pread(::fileno(scratch_), read_back_.data() + done, read_back_.size() - done,
+                                    static_cast<::off_t>(offset + done));
+    if (count <= 0) throw OutputError("cannot read the temporary data of " + path_);
+    done += static_cast<std::size_t>(count);
+  }
+  return read_back_;
+}
+
+std::uint32_t NpzWriter::copy_column(std::size_t column, std::uint32_t crc) {
+  const auto copy = [&](std::span<const std::uint8_t> bytes) {
+    crc = zip_crc32(bytes, crc);
+    file_.write(bytes);
+  };
+  for (std::uint64_t block = 0; block < spilled_blocks_; ++block) copy(spilled(block, column));
+  copy({reinterpret_cast<const std::uint8_t*>(column_of_block(column)), block_rows_ * sizeof(double)});
+  return crc;
+}
+
+Entry NpzWriter::write_column(std::size_t column) {
+  const std::uint64_t rows = spilled_blocks_ * kBlockRows + block_rows_;
+  const Record header = npy_header(rows);
+  Entry entry{columns_[column] + ".npy", file_.size(), header.bytes.size() + rows * sizeof(double), 0};
+  file_.write(local_header(entry).bytes);
+  file_.write(header.bytes);
+  entry.crc = copy_column(column, zip_crc32(header.bytes));
+  file_.patch(entry.offset + kCrcOffset, Record().u32(entry.crc).bytes);
+  return entry;
+}
+
+void NpzWriter::finish() {
+  if (scratch_ != nullptr && std::fflush(scratch_) != 0) {
+    throw OutputError("cannot write the temporary data of " + path_ + ": " + std::strerror(errno));
+  }
+  std::vector<Entry> entries;
+  for (std::size_t column = 0; column < columns_.size(); ++column) entries.push_back(write_column(column));
+  const std::uint64_t start = file_.size();
+  for (const Entry& entry : entries) file_.write(central_header(entry).bytes);
+  file_.write(end_records(entries.size(), start, file_.size() - start).bytes);
+  file_.commit();
+}
+
+}  // namespace
+
+std::unique_ptr<TableWriter> make_npz_writer(const std::string& path, std::vector<std::string> columns) {
+  return std::make_unique<NpzWriter>(path, std::move(columns));
+}
+
+}  // namespace pmac::runtime

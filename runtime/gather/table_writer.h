@@ -1,0 +1,39 @@
+// Writes a table of doubles, columns by name, rows as they come, in one of three forms chosen by the ending of the file name:
+//
+//     .csv  a line of names, then rows; numbers in the shortest form that reads back as the same double
+//     .npz  one NumPy array per column under its name (an uncompressed ZIP archive of .npy files)
+//     .txt  as the controller's gather tool uploads: no header, values separated by one blank
+//
+// The name appears when the table is complete: finish(), at any time; a writer that is dropped before leaves nothing.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/gather/output_file.h"
+
+namespace pmac::runtime {
+
+enum class TableFormat { kCsv, kNpz, kText };
+
+/// Format by the ending of a file name, in either case; nullopt for others.
+std::optional<TableFormat> table_format_of(std::string_view path);
+
+class TableWriter {
+ public:
+  virtual ~TableWriter() = default;
+  /// rows: row-major, a multiple of the number of columns. Throws OutputError.
+  virtual void append(std::span<const double> rows) = 0;
+  /// Completes the file with the rows appended so far. Throws OutputError; then nothing keeps the name. Call at most once.
+  virtual void finish() = 0;
+};
+
+/// Throws OutputError when the file cannot be created, std::invalid_argument without columns.
+std::unique_ptr<TableWriter> make_table_writer(TableFormat format, const std::string& path,
+                                               std::vector<std::string> columns);
+
+}  // namespace pmac::runtime

@@ -1,0 +1,144 @@
+// The way into the runtime: one simulated controller. Load modules, give commands, run simulated time, take the samples.
+//
+//     Machine machine(options);
+//     machine.add_sink(&statistics);
+//     machine.load(std::move(module));            // executes its load script
+//     machine.command("&1 b1r");
+//     RunOutcome outcome = machine.run(limits);
+//
+// Time is simulated and comes from the machine alone: the same input gives the same samples, bit by bit.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "compiler/bytecode/bytecode.h"
+#include "runtime/fault.h"
+#include "runtime/gather_unit.h"
+#include "runtime/motion/types.h"
+#include "runtime/servo/servo.h"
+
+namespace pmac::motion {
+struct StageObservers;
+}
+
+namespace pmac::runtime {
+
+/// Compiles a line of on-line commands, or says why not (the controller's error text). `name` appears as the file.
+using OnlineCompiler = std::function<std::variant<bytecode::Module, std::string>(std::string_view text, std::string_view name)>;
+
+/// A move, dwell, delay, jog or home, complete.
+struct MoveRecord {
+  std::string_view mode;        // linear, rapid, circle1, ..., dwell, delay, jog, home
+  bytecode::SourceLine source;
+  int coord = -1;               // -1: a motor's own move
+  int motor = -1;
+  double start_ms = 0, end_ms = 0;
+  double length = 0;            // axis units along the path, 0 for dwell and delay; motor units for a jog
+};
+
+/// A write by a program that changed a point of a simulated card.
+struct OutputChange {
+  double time_ms = 0;
+  std::string name;             // declared name of the pointer, or its address
+  double value = 0;
+  bytecode::SourceLine source;
+};
+
+struct FaultRecord {
+  double time_ms = 0;
+  int coord = -1, plc = -1;
+  Fault fault;
+};
+
+/// What the owner wants to hear. Any may be empty.
+struct MachineObservers {
+  std::function<void(const std::string&)> answer;            // reports of on-line commands, [send N] lines
+  std::function<void(const std::string& text, const std::string& reason)> refused;  // on-line commands refused
+  std::function<void(const MoveRecord&)> move;
+  std::function<void(const OutputChange&)> output;
+  std::function<void(const FaultRecord&)> fault;
+  std::function<void(int coord, const motion::MotionCommand&)> motion_command;
+  std::function<void(double time_ms)> progress;               // now and then while running
+};
+
+struct MachineOptions {
+  motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
+  motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool limit_jerk = false;
+  OnlineCompiler compile_online;                              // cmd "...", --at, console
+  MachineObservers observers;
+  std::uint64_t max_instructions = 20'000'000'000;            // of a whole run
+};
+
+enum class RunEnd { kIdle, kUntil, kTimeLimit, kBudget, kInterrupted };
+
+struct RunLimits {
+  std::optional<double> until_ms;   // run exactly to here; absent: until idle for idle_ms
+  double max_ms = 3'600'000;
+  double idle_ms = 10;
+  std::function<bool()> interrupted;
+};
+
+struct RunOutcome {
+  RunEnd end = RunEnd::kIdle;
+  double time_ms = 0;
+  std::int64_t ticks = 0;
+  std::uint64_t instructions = 0;
+  /// Where every running program stood, for a message at a limit: "prog 1 at loop.pmc:3".
+  std::vector<std::string> running;
+};
+
+class Machine {
+ public:
+  explicit Machine(MachineOptions options);
+  ~Machine();
+  Machine(const Machine&) = delete;
+
+  /// Takes over the module and executes its load scripts at the present time. The module must have passed verify().
+  void load(bytecode::Module module);
+  /// Compiles and executes a line of on-line commands now.
+  void command(std::string_view text, std::string_view name = "command");
+  /// The same at a simulated time.
+  void at(double time_ms, std::string text);
+
+  /// Takes samples from the first tick (time 0) on. Before run().
+  void add_sink(SampleSink* sink);
+  /// Takes what programs gather (Gather.Enable). Before run().
+  void set_gather_sink(GatherSink sink);
+  void observe_stages(int coord, motion::StageObservers observers);
+
+  RunOutcome run(const RunLimits& limits);
+
+  double time_ms() const;
+  double servo_period_ms() const;
+  /// Source file names by SourceLine::file, over all loaded modules.
+  const std::vector<std::string>& files() const;
+  std::string place(bytecode::SourceLine source) const;   // "file:line"
+  bool any_fault() const;
+  bool any_refused() const;
+
+  /// Motors of every coordinate system, ascending; and those that have moved besides.
+  std::vector<int> motors_in_use() const;
+  /// Coordinate systems that have motors.
+  std::vector<int> coords_in_use() const;
+  /// Axes of a coordinate system that have motors, as a mask; and their positions for motor positions by motor number
+  /// (the forward map). False where the forward routine has no solution.
+  std::uint32_t axes_of(int coord) const;
+  bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu);
+  /// Motor positions of an axis position, into motor_mu by motor number; the fault where there is none.
+  std::optional<Fault> motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu);
+
+  struct State;
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pmac::runtime

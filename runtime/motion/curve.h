@@ -1,0 +1,39 @@
+// The geometry of one move in axis space, without time: a straight line of all its axes, or an arc of three of them (helix and
+// spiral included) with the others running along. The parameter u goes from 0 at the start to 1 at the end.
+//
+//   line    p(u) = start + u * delta
+//   arc     as a line in every axis outside the plane, and in the plane
+//           p(u) = center + (radius + u * radius_change) * (radial cos(u * sweep) + tangential sin(u * sweep))
+#pragma once
+
+#include <array>
+
+#include "runtime/motion/types.h"
+
+namespace pmac::motion {
+
+/// Axis indices of the two circle sets.
+inline constexpr int kAxisX = 6, kAxisXX = 29;
+
+struct Curve {
+  AxisVector start{}, end{};    // every axis, also those that do not move
+  AxisVector delta{};           // of the part that is linear in u; for an arc its component along the normal
+  std::uint32_t moved = 0;      // axes that change (1 << axis index)
+  bool is_arc = false;
+  int first_axis = kAxisX;      // of the three circle axes
+  std::array<double, 3> center{}, radial{}, tangential{};  // the last two are unit vectors
+  std::vector<double> motor_start_mu, motor_delta_mu;  // unsegmented: motors go straight from end to end; else empty
+  double radius = 0, radius_change = 0, sweep_rad = 0;
+};
+
+/// A straight line; `moved` are the axes that differ.
+Curve line(const AxisVector& start, const AxisVector& end);
+
+/// Position and derivatives with respect to u. Only moved axes are written to the derivatives, which start as zero.
+struct CurvePoint { AxisVector position; AxisVector d1{}, d2{}; };
+void evaluate(const Curve& curve, double u, CurvePoint& point);
+
+/// First derivative with respect to u at u.
+AxisVector derivative(const Curve& curve, double u);
+
+}  // namespace pmac::motion

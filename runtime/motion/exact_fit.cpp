@@ -1,0 +1,34 @@
+// Linear maps: motor velocities are the map's image of the exact axis velocities, so the cubic meets position and velocity of
+// the path at both nodes. Error on an arc: V^4 T^4 / (384 R^3).
+#include "runtime/motion/node_fit.h"
+
+namespace pmac::motion {
+
+Segment hermite_segment(const MotorNode& from, const MotorNode& to, const std::vector<double>& p0, const std::vector<double>& v0,
+                        const std::vector<double>& p1, const std::vector<double>& v1) {
+  Segment segment{to.command, to.source, from.time_ms, to.time_ms - from.time_ms, {}};
+  segment.motor.resize(p0.size());
+  for (std::size_t m = 0; m < p0.size(); ++m) segment.motor[m] = hermite_cubic(p0[m], v0[m], p1[m], v1[m], segment.duration_ms);
+  return segment;
+}
+
+namespace {
+
+class ExactFit : public NodeFit {
+ public:
+  void add(MotorNode node, std::vector<Segment>& out) override {
+    if (last_) out.push_back(hermite_segment(*last_, node, last_->position_mu, last_->after.velocity_mu_ms, node.position_mu,
+                                             node.before.velocity_mu_ms));
+    last_ = std::move(node);
+  }
+  void finish(std::vector<Segment>&) override { last_.reset(); }
+
+ private:
+  std::optional<MotorNode> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<NodeFit> make_exact_fit() { return std::make_unique<ExactFit>(); }
+
+}  // namespace pmac::motion

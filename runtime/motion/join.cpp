@@ -1,0 +1,95 @@
+#include "runtime/motion/join.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/motion/axis_vector.h"
+
+namespace pmac::motion {
+namespace {
+
+/// Directions that differ by less are the same: what rounding leaves of a tangent line and arc.
+constexpr double kTangentTolerance = 1e-7;
+constexpr double kSameSpeedTolerance = 1e-12;
+/// Room that is short by rounding only is room.
+constexpr double kRoomTolerance = 1e-9;
+
+struct Corner {
+  AxisVector before{}, after{};
+  double speed_before, speed_after;
+};
+
+Corner corner_between(const Move& previous, const Move& next) {
+  Corner corner{end_velocity(previous, 1), end_velocity(next, 0), 0, 0};
+  corner.speed_before = norm(corner.before, previous.curve->moved);
+  corner.speed_after = norm(corner.after, next.curve->moved);
+  return corner;
+}
+
+double speed_change(const Corner& corner, std::uint32_t axes) {
+  double sum = 0;
+  for_each_axis(axes, [&](std::size_t axis) { sum += (corner.after[axis] - corner.before[axis]) * (corner.after[axis] - corner.before[axis]); });
+  return std::sqrt(sum);
+}
+
+bool directions_agree(const Corner& corner, std::uint32_t axes) {
+  if (corner.speed_before == 0 || corner.speed_after == 0) return false;
+  double difference = 0;
+  for_each_axis(axes, [&](std::size_t axis) {
+    const double d = corner.after[axis] / corner.speed_after - corner.before[axis] / corner.speed_before;
+    difference += d * d;
+  });
+  return difference <= kTangentTolerance * kTangentTolerance;
+}
+
+JoinKind kind_of(const Corner& corner, std::uint32_t axes) {
+  const double change = speed_change(corner, axes);
+  if (change <= kSameSpeedTolerance * std::max(corner.speed_before, corner.speed_after)) return JoinKind::kSteady;
+  return directions_agree(corner, axes) ? JoinKind::kAlongPath : JoinKind::kCorner;
+}
+
+/// Direction of a velocity in the plane of `normal`, over the circle axes; zero where it has none.
+std::array<double, 3> in_plane(const AxisVector& velocity, const Move& move) {
+  const std::size_t first = static_cast<std::size_t>(move.second_set ? kAxisXX : kAxisX);
+  const auto& n = move.normal;
+  const double nn = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  const double along = nn > 0 ? (velocity[first] * n[0] + velocity[first + 1] * n[1] + velocity[first + 2] * n[2]) / nn : 0;
+  std::array<double, 3> result{};
+  for (std::size_t i = 0; i < 3; ++i) result[i] = velocity[first + i] - along * n[i];
+  return result;
+}
+
+/// CornerBlendBp: the cosine of the change in direction is below the set one.
+bool corner_is_too_sharp(const Corner& corner, const Move& next, double corner_blend_bp) {
+  if (corner_blend_bp == 0) return false;
+  const auto a = in_plane(corner.before, next), b = in_plane(corner.after, next);
+  const double product = std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]);
+  if (product == 0) return false;
+  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / product < corner_blend_bp;
+}
+
+std::vector<double> motor_change(const Move& previous, const Move& next) {
+  std::vector<double> change(next.curve->motor_delta_mu.size());
+  for (std::size_t motor = 0; motor < change.size(); ++motor)
+    change[motor] = next.curve->motor_delta_mu[motor] / next.time_ms - previous.curve->motor_delta_mu[motor] / previous.time_ms;
+  return change;
+}
+
+}  // namespace
+
+Join decide_join(const Move& previous, const Move& next, double entry_total_ms, const PipelineConfig& config) {
+  const Corner corner = corner_between(previous, next);
+  const std::uint32_t axes = previous.curve->moved | next.curve->moved;
+  if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) return {};
+  const Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
+  const double room = std::min(2 * previous.time_ms - entry_total_ms, 2 * next.time_ms - next.stop_ramp.total_ms());
+  Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after};
+  if (config.segment_time_ms > 0) {
+    if (ramp.total_ms() > room) join.ramp = scaled_to(ramp, std::max(0.0, room));
+    return join;
+  }
+  const double allowed = std::min(room, previous.stop_ramp.total_ms());
+  return ramp.total_ms() <= allowed * (1 + kRoomTolerance) ? join : Join{};
+}
+
+}  // namespace pmac::motion

@@ -1,0 +1,37 @@
+#include "runtime/motion/motor_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace pmac::motion {
+
+MotorKinematics::MotorKinematics(const MotorMap& map) : count_(map.motors.size()), offset_mu_(map.offset_mu), inverse_(map.inverse) {
+  offset_mu_.resize(count_, 0.0);
+  if (inverse_) return;
+  for (std::size_t motor = 0; motor < count_; ++motor)
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      if (const double c = map.matrix_mu_uu[motor * kAxisCount + axis]; c != 0) terms_.push_back({motor, axis, c});
+}
+
+std::optional<runtime::Fault> MotorKinematics::position(const AxisVector& axis_uu, double* motor_mu, SourceLine source) const {
+  if (!inverse_) {
+    std::copy(offset_mu_.begin(), offset_mu_.end(), motor_mu);
+    for (const Term& term : terms_) motor_mu[term.motor] += term.coefficient * axis_uu[term.axis];
+    return std::nullopt;
+  }
+  if (auto fault = inverse_(axis_uu, motor_mu, source)) return fault;
+  for (std::size_t motor = 0; motor < count_; ++motor)
+    if (!std::isfinite(motor_mu[motor]))
+      return runtime::Fault{runtime::FaultKind::kInverseKinematics, source,
+                            fmt::format("inverse kinematics gave no finite position for entry {} of the motors", motor)};
+  return std::nullopt;
+}
+
+void MotorKinematics::rate(const AxisVector& axis_rate, double* motor_rate) const {
+  std::fill(motor_rate, motor_rate + count_, 0.0);
+  for (const Term& term : terms_) motor_rate[term.motor] += term.coefficient * axis_rate[term.axis];
+}
+
+}  // namespace pmac::motion

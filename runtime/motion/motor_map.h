@@ -1,0 +1,33 @@
+// From axis positions to motor positions: either the linear axis definitions or the inverse kinematic routine.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "runtime/motion/types.h"
+
+namespace pmac::motion {
+
+class MotorKinematics {
+ public:
+  MotorKinematics() = default;
+  explicit MotorKinematics(const MotorMap& map);
+
+  std::size_t count() const { return count_; }
+  bool is_linear() const { return !inverse_; }
+
+  /// motor_mu: [count()]. The routine's fault, or one for a result that is not finite; motor_mu is then of no use.
+  std::optional<runtime::Fault> position(const AxisVector& axis_uu, double* motor_mu, SourceLine source) const;
+
+  /// Linear maps only: motor velocities (or any derivative) of axis velocities.
+  void rate(const AxisVector& axis_rate, double* motor_rate) const;
+
+ private:
+  struct Term { std::size_t motor, axis; double coefficient; };
+  std::size_t count_ = 0;
+  std::vector<Term> terms_;          // non-zero coefficients, by motor
+  std::vector<double> offset_mu_;
+  std::function<std::optional<runtime::Fault>(const AxisVector&, double*, SourceLine)> inverse_;
+};
+
+}  // namespace pmac::motion

@@ -1,0 +1,186 @@
+#include "runtime/motion/move.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/motion/axis_vector.h"
+#include "runtime/motion/circle.h"
+
+namespace pmac::motion {
+namespace {
+
+using runtime::Fault;
+using runtime::FaultKind;
+using runtime::Result;
+
+bool is_finite(const AxisVector& vector, std::uint32_t axes) {
+  bool finite = true;
+  for_each_axis(axes, [&](std::size_t axis) { finite = finite && std::isfinite(vector[axis]); });
+  return finite;
+}
+
+std::optional<Fault> check(const MotionCommand& command) {
+  const auto refuse = [&](const char* why) { return Fault{FaultKind::kBadTarget, command.source, why}; };
+  if (!is_finite(command.target_uu, command.axes)) return refuse("the target is not a finite number");
+  if (!std::isfinite(command.feed_uu) || command.feed_uu < 0) return refuse("the feed rate must be a positive number");
+  if (!std::isfinite(command.move_time_ms) || command.move_time_ms < 0) return refuse("the move time must not be negative");
+  if (!(command.feed_time_ms > 0)) return refuse("Coord[].FeedTime must be positive");
+  if (!is_valid({command.ta_ms, command.ts_ms}) || !is_valid({command.td_ms, command.tsd_ms}))
+    return refuse("ts must be a rate (negative) or 0 where ta is a rate");
+  for (const double value : command.center_uu)
+    if (!std::isfinite(value)) return refuse("the centre vector is not a finite number");
+  if (!std::isfinite(command.radius_uu)) return refuse("the radius is not a finite number");
+  return std::nullopt;
+}
+
+AxisVector end_point(const MotionCommand& command, const AxisVector& start) {
+  AxisVector end = start;
+  for_each_axis(command.axes, [&](std::size_t axis) { end[axis] = command.target_uu[axis]; });
+  return end;
+}
+
+/// Longest displacement among axes, absolute.
+double longest(const Curve& curve, std::uint32_t axes) {
+  double result = 0;
+  for_each_axis(axes & curve.moved, [&](std::size_t axis) { result = std::max(result, std::abs(curve.end[axis] - curve.start[axis])); });
+  return result;
+}
+
+/// Length over the feed-rate axes; the three axes of an arc always count, with the arc in place of its chord.
+double feed_length(const Arc& arc, const MotionCommand& command) {
+  const Curve& curve = arc.curve;
+  const std::uint32_t circle_axes = curve.is_arc ? 7u << curve.first_axis : 0;
+  return std::hypot(arc.length_uu, norm(curve.delta, (command.feed_axes | circle_axes) & curve.moved));
+}
+
+/// Feed rate in effect, uu per feed time: clipped by MaxFeedRate, and on an arc by MaxCirAccel (v^2/R).
+double feed_in_effect(const MotionCommand& command, const Arc& arc, double length_uu, const PipelineConfig& config) {
+  double feed = command.feed_uu;
+  if (config.max_feed_uu > 0) feed = std::min(feed, config.max_feed_uu);
+  if (config.max_circle_accel > 0 && arc.curve.is_arc)
+    feed = std::min(feed, std::sqrt(config.max_circle_accel * arc.min_radius_uu) * length_uu / arc.length_uu);
+  return feed;
+}
+
+/// TM before the short-move rule.
+double programmed_time_ms(const MotionCommand& command, const Arc& arc, double length_uu, const PipelineConfig& config) {
+  if (command.kind == CommandKind::kDelay) return std::max(command.move_time_ms, config.segment_time_ms);
+  if (command.feed_uu == 0) return command.move_time_ms;
+  if (command.inverse_time) return command.feed_time_ms / command.feed_uu;
+  const std::uint32_t circle_axes = arc.curve.is_arc ? 7u << arc.curve.first_axis : 0;
+  const double other = longest(arc.curve, ~(command.feed_axes | circle_axes));
+  const double feed = feed_in_effect(command, arc, length_uu, config);
+  double time_ms = length_uu / feed * command.feed_time_ms;
+  if (command.alt_feed_uu > 0) time_ms = std::max(time_ms, other / command.alt_feed_uu * command.feed_time_ms);
+  if (command.alt_feed_uu <= 0 && length_uu == 0) time_ms = other / feed * command.feed_time_ms;
+  return time_ms;
+}
+
+/// Shortest time at which no motor is above its MaxSpeed, unsegmented.
+double time_for_max_speed_ms(const Move& move, const PipelineConfig& config) {
+  double time_ms = 0;
+  for (std::size_t motor = 0; motor < std::min(move.curve->motor_delta_mu.size(), config.limits.size()); ++motor)
+    if (config.limits[motor].max_speed_mu_ms > 0)
+      time_ms = std::max(time_ms, std::abs(move.curve->motor_delta_mu[motor]) / config.limits[motor].max_speed_mu_ms);
+  return time_ms;
+}
+
+std::vector<double> motor_velocity(const Move& move, double time_ms) {
+  std::vector<double> velocity = move.curve->motor_delta_mu;
+  for (double& v : velocity) v = v == 0 ? 0 : v / time_ms;
+  return velocity;
+}
+
+double vector_speed(const Move& move, double time_ms) { return move.length_uu == 0 ? 0 : move.length_uu / time_ms; }
+
+Ramp own_ramp(const Move& move, double time_ms, bool stops, const PipelineConfig& config) {
+  return ramp_within_limits(stops ? move.exit : move.entry, vector_speed(move, time_ms), motor_velocity(move, time_ms), stops, config);
+}
+
+/// Short-move rule: TM >= (T_acc + T_dec)/2. The ramps get shorter with the speed, so the condition is monotone in TM.
+double time_with_room_for_ramps(const Move& move, double time_ms, const PipelineConfig& config) {
+  const auto ramps = [&](double time) {
+    return (own_ramp(move, time, false, config).total_ms() + own_ramp(move, time, true, config).total_ms()) / 2;
+  };
+  const double shortest = std::max(time_ms, 1e-9);
+  if (ramps(shortest) <= shortest) return ramps(shortest) == 0 ? time_ms : shortest;
+  double low = shortest, high = ramps(shortest);
+  if (ramps(high) == high) return high;  // ramps given as times
+  for (int i = 0; i < 100 && high - low > 1e-14 * high; ++i) {
+    const double middle = (low + high) / 2;
+    (ramps(middle) > middle ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Unsegmented moves take the motors straight to the image of the end point.
+std::optional<Fault> map_ends(Curve& curve, const std::vector<double>& start_motor_mu, SourceLine source, const MoveContext& context) {
+  if (context.config.segment_time_ms > 0) return std::nullopt;
+  curve.motor_start_mu = start_motor_mu;
+  curve.motor_delta_mu.resize(context.kinematics.count());
+  if (auto fault = context.kinematics.position(curve.end, curve.motor_delta_mu.data(), source)) return fault;
+  for (std::size_t motor = 0; motor < start_motor_mu.size(); ++motor) curve.motor_delta_mu[motor] -= start_motor_mu[motor];
+  return std::nullopt;
+}
+
+Result<Arc> make_geometry(const MotionCommand& command, const AxisVector& start, const PipelineConfig& config) {
+  const AxisVector end = command.kind == CommandKind::kDelay ? start : end_point(command, start);
+  const bool as_line = command.kind != CommandKind::kCircle || config.segment_time_ms <= 0;
+  if (as_line) return Arc{line(start, end), 0, 0};
+  return make_arc(command, start, end, config);
+}
+
+void take_words(Move& move, const MotionCommand& command) {
+  move.id = command.id;
+  move.source = command.source;
+  move.entry = {command.ta_ms, command.ts_ms};
+  move.exit = {command.td_ms, command.tsd_ms};
+  move.no_blend = command.no_blend;
+  move.normal = command.normal;
+  move.second_set = command.second_set;
+}
+
+}  // namespace
+
+Ramp ramp_within_limits(const RampSetting& setting, double speed_change_uu_ms, const std::vector<double>& motor_change_mu_ms,
+                        bool stops, const PipelineConfig& config) {
+  Ramp ramp = make_ramp(setting, speed_change_uu_ms, config.ramp_rule);
+  for (std::size_t motor = 0; motor < std::min(motor_change_mu_ms.size(), config.limits.size()); ++motor) {
+    const MotorLimits& limits = config.limits[motor];
+    const double inv_accel = stops && limits.inv_dmax_ms2_mu > 0 ? limits.inv_dmax_ms2_mu : limits.inv_amax_ms2_mu;
+    ramp = lengthened(ramp, motor_change_mu_ms[motor], inv_accel, config.jerk_limit_unsegmented ? limits.inv_jmax_ms3_mu : 0);
+  }
+  return ramp;
+}
+
+Ramp start_ramp(const Move& move, const PipelineConfig& config) { return own_ramp(move, move.time_ms, false, config); }
+
+AxisVector end_velocity(const Move& move, double u) {
+  AxisVector velocity = derivative(*move.curve, u);
+  for_each_axis(move.curve->moved, [&](std::size_t axis) { velocity[axis] /= move.time_ms; });
+  return velocity;
+}
+
+Result<Move> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
+                       const MoveContext& context) {
+  if (auto fault = check(command)) return *fault;
+  Result<Arc> geometry = make_geometry(command, start, context.config);
+  if (Fault* fault = std::get_if<Fault>(&geometry)) return *fault;
+  Arc& arc = std::get<Arc>(geometry);
+  if (auto fault = map_ends(arc.curve, start_motor_mu, command.source, context)) return *fault;
+  Move move;
+  take_words(move, command);
+  move.curve = std::make_shared<const Curve>(arc.curve);
+  move.length_uu = command.kind == CommandKind::kDelay ? 0 : feed_length(arc, command);
+  const double programmed_ms = programmed_time_ms(command, arc, move.length_uu, context.config);
+  if (move.length_uu == 0) move.length_uu = longest(arc.curve, ~0u);
+  move.time_ms = std::max(programmed_ms, time_for_max_speed_ms(move, context.config));
+  move.time_ms = time_with_room_for_ramps(move, move.time_ms, context.config);
+  if (!std::isfinite(move.time_ms)) return Fault{FaultKind::kBadTarget, command.source, "the move would take for ever"};
+  if (move.time_ms == 0 && move.curve->moved != 0)
+    return Fault{FaultKind::kBadTarget, command.source, "the move takes no time; set tm, ta or a feed rate"};
+  move.stop_ramp = own_ramp(move, move.time_ms, true, context.config);
+  return move;
+}
+
+}  // namespace pmac::motion

@@ -1,0 +1,48 @@
+// One command made ready for blending: its curve, how long it takes at constant speed, and its own ramps. Manual: User's Manual
+// p722-729 (move time, limits of unsegmented moves), Turbo Software Reference F, FRAX, Isx13.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "runtime/motion/curve.h"
+#include "runtime/motion/motor_map.h"
+#include "runtime/motion/ramp.h"
+
+namespace pmac::motion {
+
+struct Move {
+  std::uint64_t id = 0;
+  SourceLine source;
+  std::shared_ptr<const Curve> curve;
+  double time_ms = 0;                   // TM: at constant speed, after all rules
+  double length_uu = 0;                 // over the axes that counted for the feed rate
+  RampSetting entry{}, exit{};          // ta ts, td tsd as set
+  Ramp stop_ramp;                       // to rest at the end of this move
+  bool no_blend = false;
+  std::array<double, 3> normal{};       // for the corner rule
+  bool second_set = false;
+};
+
+/// What moves of one pipeline have in common.
+struct MoveContext {
+  const PipelineConfig& config;
+  const MotorKinematics& kinematics;
+};
+
+/// The command from `start` as a Move. Faults are the command's own: target, feed rate, circle, kinematics (unsegmented).
+runtime::Result<Move> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
+                                const MoveContext& context);
+
+/// The ramp of a change of velocity by speed_change_uu_ms (vector speed) and motor_change_mu_ms ([motor], signed; may be
+/// empty): as set, and unsegmented as long as the motors need it. stops: InvDmax counts instead of InvAmax.
+Ramp ramp_within_limits(const RampSetting& setting, double speed_change_uu_ms, const std::vector<double>& motor_change_mu_ms,
+                        bool stops, const PipelineConfig& config);
+
+/// From rest into this move.
+Ramp start_ramp(const Move& move, const PipelineConfig& config);
+
+/// Velocity of all axes at the end of a curve (u 0 or 1) when it is run through at constant speed, uu/ms.
+AxisVector end_velocity(const Move& move, double u);
+
+}  // namespace pmac::motion

@@ -1,0 +1,50 @@
+// From nodes to segments: positions at the nodes are given, and a fit decides the velocities with which cubics join them.
+// Three fits: exact velocities of a linear map, velocities estimated from neighbouring nodes (kinematic routines), and the
+// smoothing B-spline.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "runtime/motion/segment.h"
+
+namespace pmac::motion {
+
+/// One side of a node. Within a stretch motor positions are a smooth function of z, and z of time.
+struct NodeSide {
+  std::uint64_t stretch = 0;
+  double z = 0, z_rate = 0;             // 1/ms
+  std::vector<double> velocity_mu_ms;   // linear maps only
+};
+
+struct MotorNode {
+  double time_ms = 0;                   // programmed time
+  std::uint64_t command = 0;            // of the segment that ends here
+  SourceLine source;
+  std::vector<double> position_mu;
+  NodeSide before, after;
+  bool step = false;                    // the velocity steps here: the sides are not to be made equal
+};
+
+class NodeFit {
+ public:
+  virtual ~NodeFit() = default;
+  /// The next node of a chain; the first one opens it. Appends the segments that are now decided.
+  virtual void add(MotorNode node, std::vector<Segment>& out) = 0;
+  /// The chain has come to rest at its last node.
+  virtual void finish(std::vector<Segment>& out) = 0;
+};
+
+/// Cubics through the nodes with the given velocities of both sides.
+std::unique_ptr<NodeFit> make_exact_fit();
+/// Cubics through the nodes; velocities from polynomials through up to five nodes of the same stretch.
+std::unique_ptr<NodeFit> make_stencil_fit();
+/// Smoothing cubic B-spline with the nodes as control points; at rest exactly on the first and the last node.
+std::unique_ptr<NodeFit> make_bspline_fit();
+
+/// Segment between two nodes with these end positions and velocities ([motor]).
+Segment hermite_segment(const MotorNode& from, const MotorNode& to, const std::vector<double>& p0, const std::vector<double>& v0,
+                        const std::vector<double>& p1, const std::vector<double>& v1);
+
+}  // namespace pmac::motion

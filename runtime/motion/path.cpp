@@ -1,0 +1,40 @@
+#include "runtime/motion/path.h"
+
+#include "runtime/motion/axis_vector.h"
+
+namespace pmac::motion {
+
+double parameter(const PathPart& part, double d) { return part.u[0] + d * (part.u[1] + d * (part.u[2] + d * part.u[3])); }
+
+double parameter_rate(const PathPart& part, double d) { return part.u[1] + d * (2 * part.u[2] + d * 3 * part.u[3]); }
+
+namespace {
+
+double parameter_acceleration(const PathPart& part, double d) { return 2 * part.u[2] + d * 6 * part.u[3]; }
+
+/// Adds the chain rule's velocity and acceleration of one part.
+void add_motion(const PathPart& part, double d, const CurvePoint& at, PathPoint& point) {
+  const double rate = parameter_rate(part, d), change = parameter_acceleration(part, d);
+  for_each_axis(part.curve->moved, [&](std::size_t axis) {
+    point.velocity[axis] += at.d1[axis] * rate;
+    point.acceleration[axis] += at.d1[axis] * change + at.d2[axis] * rate * rate;
+  });
+}
+
+}  // namespace
+
+PathPoint evaluate(const PathPiece& piece, double time_ms) {
+  PathPoint point;
+  CurvePoint at;
+  evaluate(*piece.part[0].curve, parameter(piece.part[0], time_ms), at);
+  point.position = at.position;
+  add_motion(piece.part[0], time_ms, at, point);
+  if (piece.part_count < 2) return point;
+  const Curve& next = *piece.part[1].curve;
+  evaluate(next, parameter(piece.part[1], time_ms), at);
+  for_each_axis(next.moved, [&](std::size_t axis) { point.position[axis] += at.position[axis] - next.start[axis]; });
+  add_motion(piece.part[1], time_ms, at, point);
+  return point;
+}
+
+}  // namespace pmac::motion

@@ -1,0 +1,219 @@
+#include "runtime/motion/pipeline.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime/motion/lookahead.h"
+#include "runtime/motion/planner.h"
+#include "runtime/motion/segmenter.h"
+#include "runtime/motion/timeline.h"
+#include "runtime/motion/timings.h"
+
+namespace pmac::motion {
+namespace {
+
+using runtime::Fault;
+
+/// Unsegmented: lines only, so that a motor is a cubic of time: start + delta * u(t), two of them superposed at a corner.
+Segment motor_segment(const PathPiece& piece) {
+  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
+  segment.motor.resize(piece.part[0].curve->motor_start_mu.size());
+  for (int i = 0; i < piece.part_count; ++i) {
+    const PathPart& part = piece.part[static_cast<std::size_t>(i)];
+    for (std::size_t m = 0; m < segment.motor.size(); ++m) {
+      const double delta = part.curve->motor_delta_mu[m];
+      MotorCubic& q = segment.motor[m];
+      q.c0 += (i == 0 ? part.curve->motor_start_mu[m] : 0) + delta * part.u[0];
+      q.c1 += delta * part.u[1];
+      q.c2 += delta * part.u[2];
+      q.c3 += delta * part.u[3];
+    }
+  }
+  return segment;
+}
+
+}  // namespace
+
+struct Pipeline::State {
+  PipelineConfig config;
+  MotorKinematics kinematics;
+  Planner planner;
+  std::optional<Segmenter> segmenter;   // segmented only
+  std::optional<Lookahead> lookahead;
+  Timeline timeline;
+  Timings timings;
+  StageObservers observers;
+  std::optional<Fault> fault;           // of a later stage: nothing more is produced until reset()
+  double earliest_ms = 0;               // start of the next sequence
+  double sequence_ms = 0;               // start of this one
+  bool in_sequence = false;
+  PlannerOutput planned;
+  std::vector<Segment> segments;
+  std::vector<TimedSegment> timed;
+
+  bool segmented() const { return config.segment_time_ms > 0; }
+  void build_stages();
+  std::optional<Fault> start_at(const AxisVector& position_uu, SourceLine source);
+  void start_sequence();
+  std::optional<Fault> run_stages(bool ends);
+  std::optional<Fault> to_segments(bool ends);
+  void to_times(bool ends);
+  void deliver();
+  Fault stop_at(Fault reason);
+};
+
+void Pipeline::State::build_stages() {
+  kinematics = MotorKinematics(config.map);
+  segmenter.reset();
+  lookahead.reset();
+  if (segmented()) segmenter.emplace(config, kinematics);
+  if (segmented() && config.lookahead) lookahead.emplace(config.limits, config.lookahead_segments);
+}
+
+std::optional<Fault> Pipeline::State::start_at(const AxisVector& position_uu, SourceLine source) {
+  std::vector<double> motors(kinematics.count());
+  auto problem = kinematics.position(position_uu, motors.data(), source);
+  if (problem) motors.assign(kinematics.count(), 0.0);
+  planner.reset(position_uu, motors);
+  timeline.set_rest(std::move(motors));
+  return problem;
+}
+
+void Pipeline::State::start_sequence() {
+  if (in_sequence) return;
+  in_sequence = true;
+  sequence_ms = std::max(earliest_ms, timeline.end_ms());
+  timings.start_sequence(sequence_ms);
+}
+
+/// What the planner has decided goes through the other stages. ends: the sequence is complete.
+std::optional<Fault> Pipeline::State::run_stages(bool ends) {
+  for (const MoveBegin& begin : planned.begins) timings.add(begin);
+  for (const MoveEnd& end : planned.ends) timings.add(end);
+  if (observers.path) std::for_each(planned.pieces.begin(), planned.pieces.end(), observers.path);
+  auto problem = to_segments(ends);
+  if (problem) fault = stop_at(*problem);
+  planned.begins.clear();
+  planned.ends.clear();
+  planned.pieces.clear();
+  to_times(ends || problem);
+  deliver();
+  if (ends || problem) timings.end_sequence();
+  return problem;
+}
+
+std::optional<Fault> Pipeline::State::to_segments(bool ends) {
+  for (const PathPiece& piece : planned.pieces) {
+    if (!segmented()) segments.push_back(motor_segment(piece));
+    if (segmented())
+      if (auto problem = segmenter->add(piece, segments)) return problem;
+  }
+  return ends && segmented() ? segmenter->finish(segments) : std::nullopt;
+}
+
+/// The path ends at the last node that could be calculated.
+Fault Pipeline::State::stop_at(Fault reason) {
+  segmenter->abandon(segments);
+  in_sequence = false;
+  return reason;
+}
+
+void Pipeline::State::to_times(bool ends) {
+  if (observers.segment) std::for_each(segments.begin(), segments.end(), observers.segment);
+  for (Segment& segment : segments) {
+    if (lookahead) {
+      lookahead->add(std::move(segment), timed);
+      continue;
+    }
+    const double start_ms = sequence_ms + segment.start_ms, duration_ms = segment.duration_ms;
+    timed.push_back({std::move(segment), start_ms, duration_ms, 1, 0});
+  }
+  segments.clear();
+  if (ends && lookahead) lookahead->finish(timed);
+}
+
+void Pipeline::State::deliver() {
+  for (TimedSegment& segment : timed) {
+    if (lookahead) segment.start_ms = std::max(timeline.end_ms(), sequence_ms);
+    if (observers.timed_segment) observers.timed_segment(segment);
+    timings.cover(segment);
+    timeline.push(std::move(segment));
+  }
+  timed.clear();
+}
+
+Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
+Pipeline::~Pipeline() = default;
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+
+void Pipeline::reset(const PipelineConfig& config, const AxisVector& start_uu, double start_time_ms) {
+  StageObservers observers = std::move(state_->observers);
+  state_ = std::make_unique<State>();
+  state_->observers = std::move(observers);
+  state_->config = config;
+  state_->build_stages();
+  state_->timings.reset(state_->segmented());
+  state_->timeline.reset(std::vector<double>(state_->kinematics.count()), start_time_ms);
+  state_->earliest_ms = start_time_ms;
+  state_->fault = state_->start_at(start_uu, {});
+}
+
+void Pipeline::observe(StageObservers observers) { state_->observers = std::move(observers); }
+
+std::optional<Fault> Pipeline::add(const MotionCommand& command) {
+  State& s = *state_;
+  if (s.fault) return s.fault;
+  auto move = make_move(command, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics});
+  if (Fault* problem = std::get_if<Fault>(&move)) return std::move(*problem);
+  s.timeline.prune();
+  s.timings.prune(s.timeline.sampled_ms());
+  s.start_sequence();
+  s.planner.add(std::move(std::get<Move>(move)), s.config, s.planned);
+  return s.run_stages(false);
+}
+
+std::optional<Fault> Pipeline::end_sequence() {
+  State& s = *state_;
+  if (s.fault) return s.fault;
+  if (!s.in_sequence) return std::nullopt;
+  s.planner.end_sequence(s.planned);
+  auto problem = s.run_stages(true);
+  s.in_sequence = false;
+  return problem;
+}
+
+void Pipeline::set_earliest_start(double time_ms) { state_->earliest_ms = std::max(state_->earliest_ms, time_ms); }
+
+void Pipeline::set_position(const AxisVector& position_uu) {
+  if (auto problem = state_->start_at(position_uu, {})) state_->fault = problem;
+}
+
+int Pipeline::commands_ahead(double time_ms) const { return state_->timings.ahead(time_ms); }
+
+bool Pipeline::wants_more_segments(double time_ms) const {
+  const State& s = *state_;
+  return s.lookahead && !s.fault && s.timeline.segments_after(time_ms) + s.lookahead->waiting() < s.lookahead->needed();
+}
+
+bool Pipeline::at_rest(double time_ms) const { return !state_->in_sequence && time_ms >= state_->timeline.end_ms(); }
+
+double Pipeline::horizon_ms() const {
+  const State& s = *state_;
+  return std::max(s.timeline.end_ms(), s.in_sequence ? s.sequence_ms : s.earliest_ms);
+}
+
+double Pipeline::end_ms() const { return state_->timeline.end_ms(); }
+
+void Pipeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
+  state_->timeline.sample(start_ms, period_ms, count, position_mu, velocity_mu_ms);
+}
+
+SourceLine Pipeline::executing_source(double time_ms) const { return state_->timeline.source_at(time_ms); }
+
+const AxisVector& Pipeline::calculated_position() const { return state_->planner.position(); }
+
+void Pipeline::take_timings(std::vector<MoveTiming>& out) { state_->timings.take(out); }
+void Pipeline::take_sync_times(std::vector<SyncTime>& out) { state_->timings.take_sync_times(out); }
+
+}  // namespace pmac::motion

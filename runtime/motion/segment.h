@@ -1,0 +1,43 @@
+// Hops 7 and 8: the path in motor space as cubics of programmed time, and the same with the times at which it is executed.
+#pragma once
+
+#include <vector>
+
+#include "runtime/motion/types.h"
+
+namespace pmac::motion {
+
+/// One motor over one segment: c0 + c1 d + c2 d^2 + c3 d^3, d = programmed time since the start of the segment in ms; mu.
+struct MotorCubic {
+  double c0 = 0, c1 = 0, c2 = 0, c3 = 0;
+  double position(double d) const { return c0 + d * (c1 + d * (c2 + d * c3)); }
+  double velocity(double d) const { return c1 + d * (2 * c2 + d * 3 * c3); }
+  double acceleration(double d) const { return 2 * c2 + d * 6 * c3; }
+};
+
+/// The cubic with these positions and velocities at 0 and duration_ms.
+inline MotorCubic hermite_cubic(double p0, double v0, double p1, double v1, double duration_ms) {
+  const double mean = (p1 - p0) / duration_ms;
+  return {p0, v0, (3 * mean - 2 * v0 - v1) / duration_ms, (v0 + v1 - 2 * mean) / (duration_ms * duration_ms)};
+}
+
+struct Segment {
+  std::uint64_t command = 0;
+  SourceLine source;
+  double start_ms = 0;              // programmed time since the start of the sequence
+  double duration_ms = 0;
+  std::vector<MotorCubic> motor;    // [motor], order of the map
+};
+
+/// A segment and when it is executed. Programmed time runs at a rate 0..1 that changes evenly:
+/// d(t) = rate * t + rate_slope * t^2 / 2 with t = time - start_ms.
+struct TimedSegment {
+  Segment segment;
+  double start_ms = 0;              // pipeline time
+  double duration_ms = 0;
+  double rate = 1;                  // at the start
+  double rate_slope = 0;            // 1/ms
+  double programmed_ms(double t) const { return t * (rate + t * rate_slope / 2); }
+};
+
+}  // namespace pmac::motion

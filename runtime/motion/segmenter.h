@@ -1,0 +1,53 @@
+// Hop 6 to 7: the path evaluated exactly at nodes, brought to motor space, and joined by cubics. Nodes lie on multiples of the
+// segment time from the start of the sequence; fitting through the nodes adds one at each end of a path piece and on arcs one
+// every 0.1 rad, so that every cubic follows one smooth piece. Manual: Turbo Software Reference Isx13, User's Manual p722. Where
+// motion rests (start, end, a full stop) a new chain of nodes begins.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "runtime/motion/motor_map.h"
+#include "runtime/motion/node_fit.h"
+#include "runtime/motion/path.h"
+
+namespace pmac::motion {
+
+class Segmenter {
+ public:
+  /// config and kinematics must outlive the segmenter.
+  Segmenter(const PipelineConfig& config, const MotorKinematics& kinematics);
+
+  /// The next piece; appends the segments that are now decided. A fault is that of the kinematic routine; the segments up to
+  /// the place where it failed are appended, nothing more may be added.
+  [[nodiscard]] std::optional<runtime::Fault> add(const PathPiece& piece, std::vector<Segment>& out);
+  /// The sequence has ended at rest at the end of the last piece.
+  [[nodiscard]] std::optional<runtime::Fault> finish(std::vector<Segment>& out);
+  /// After a fault: appends what is known up to the last node and forgets the rest.
+  void abandon(std::vector<Segment>& out);
+
+ private:
+  std::optional<runtime::Fault> start_chain(const PathPiece& piece);
+  std::optional<runtime::Fault> add_node(const PathPiece& piece, double local_ms, std::vector<Segment>& out);
+  std::optional<runtime::Fault> close_gap(std::vector<Segment>& out);
+  void enter_piece(const PathPiece& piece);
+  void fill_side(NodeSide& side, const PathPiece& piece, double local_ms) const;
+  void place_nodes(const PathPiece& piece);
+  void add_turn_nodes(const PathPiece& piece, double end_ms);
+
+  const PipelineConfig& config_;
+  const MotorKinematics& kinematics_;
+  std::unique_ptr<NodeFit> fit_;
+  bool uniform_;                        // nodes on the grid only
+  std::optional<MotorNode> open_;       // last node; its far side is that of the next piece
+  std::optional<PathPiece> previous_;   // last piece
+  bool end_is_open_ = false;            // the end of previous_ has no node yet
+  double origin_ms_ = 0;                // start of the chain
+  std::int64_t next_grid_ = 1;          // next node at origin + next_grid * segment time
+  std::uint64_t stretch_ = 0;
+  double stretch_start_ms_ = 0;
+  std::vector<double> local_times_;
+};
+
+}  // namespace pmac::motion

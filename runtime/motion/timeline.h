@@ -1,0 +1,46 @@
+// Hop 9: timed segments in a row, evaluated at ascending times.
+#pragma once
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "runtime/motion/segment.h"
+
+namespace pmac::motion {
+
+class Timeline {
+ public:
+  /// Nothing but rest at position_mu.
+  void reset(std::vector<double> position_mu, double time_ms);
+  /// The motors stand here until the next segment (and from its start where that begins).
+  void set_rest(std::vector<double> position_mu) { rest_mu_ = std::move(position_mu); }
+
+  /// Starts at or after the end of the one before.
+  void push(TimedSegment segment);
+  /// Forgets segments that sample() has passed.
+  void prune();
+
+  double end_ms() const { return end_ms_; }
+  double sampled_ms() const { return sampled_ms_; }
+  const std::vector<double>& rest_mu() const { return rest_mu_; }
+  /// Segments that begin at or after time_ms.
+  int segments_after(double time_ms) const;
+  SourceLine source_at(double time_ms) const;
+
+  /// See Pipeline::sample().
+  void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
+
+ private:
+  void sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
+                      std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
+  void sample_rest(int first, int last, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
+
+  std::deque<TimedSegment> segments_;
+  std::size_t cursor_ = 0;          // first segment that ends after the last sample
+  double end_ms_ = 0;
+  double sampled_ms_ = 0;
+  std::vector<double> rest_mu_;     // after the last segment
+};
+
+}  // namespace pmac::motion

@@ -1,0 +1,125 @@
+#include "runtime/motion/timings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pmac::motion {
+namespace {
+
+constexpr double kSamePlace_ms = 1e-6;
+
+/// Time since the start of the segment at which d of its programmed time has passed.
+double time_at(const TimedSegment& segment, double d) {
+  const double end_rate2 = segment.rate * segment.rate + 2 * segment.rate_slope * d;
+  const double rates = segment.rate + std::sqrt(std::max(0.0, end_rate2));
+  return rates > 0 ? 2 * d / rates : 0;
+}
+
+}  // namespace
+
+void Timings::reset(bool sync_on_segments) {
+  *this = Timings{};
+  sync_on_segments_ = sync_on_segments;
+}
+
+void Timings::start_sequence(double start_ms) {
+  covered_programmed_ms_ = 0;
+  covered_ms_ = start_ms;
+}
+
+void Timings::add(const MoveBegin& begin) {
+  Record record{begin.id, begin.length_uu, {begin.sync_ms, 0, true}, {begin.start_ms, 0, true}, {}};
+  ++unknown_starts_;
+  cover_now(record.sync);
+  cover_now(record.start);
+  note_start(record);
+  records_.push_back(record);
+}
+
+void Timings::add(const MoveEnd& end) {
+  for (auto record = records_.rbegin(); record != records_.rend(); ++record) {
+    if (record->id != end.id) continue;
+    record->end = {end.end_ms, 0, true};
+    cover_now(record->end);
+    break;
+  }
+  deliver();
+}
+
+void Timings::note_start(const Record& record) {
+  if (!record.start.known) return;
+  starts_ms_.push_back(record.start.time_ms);
+  --unknown_starts_;
+}
+
+void Timings::cover_now(Place& place) const {
+  if (!place.given || place.known || place.programmed_ms > covered_programmed_ms_ + kSamePlace_ms) return;
+  place.known = true;
+  place.time_ms = covered_ms_;
+}
+
+void Timings::cover_place(Place& place, const TimedSegment& segment, bool round_up) const {
+  const double end_ms = segment.segment.start_ms + segment.segment.duration_ms;
+  if (!place.given || place.known || place.programmed_ms > end_ms + kSamePlace_ms) return;
+  place.known = true;
+  const double d = std::clamp(place.programmed_ms - segment.segment.start_ms, 0.0, segment.segment.duration_ms);
+  const bool at_end = round_up || d >= segment.segment.duration_ms - kSamePlace_ms;
+  place.time_ms = segment.start_ms + (at_end ? segment.duration_ms : time_at(segment, d));
+}
+
+void Timings::cover(const TimedSegment& segment) {
+  const double end_ms = segment.segment.start_ms + segment.segment.duration_ms;
+  for (Record& record : records_) {
+    if (record.sync.programmed_ms > end_ms + kSamePlace_ms) break;
+    const bool start_was_known = record.start.known;
+    cover_place(record.sync, segment, sync_on_segments_);
+    cover_place(record.start, segment, false);
+    cover_place(record.end, segment, false);
+    if (!start_was_known) note_start(record);
+  }
+  covered_programmed_ms_ = end_ms;
+  covered_ms_ = segment.start_ms + segment.duration_ms;
+  deliver();
+}
+
+void Timings::end_sequence() {
+  for (Record& record : records_) {
+    const bool start_was_known = record.start.known;
+    for (Place* place : {&record.sync, &record.start, &record.end})
+      if (!place->known) *place = {place->programmed_ms, covered_ms_, true, true};
+    if (!start_was_known) note_start(record);
+  }
+  deliver();
+}
+
+int Timings::ahead(double time_ms) const {
+  const auto first = std::upper_bound(starts_ms_.begin(), starts_ms_.end(), time_ms);
+  return unknown_starts_ + static_cast<int>(starts_ms_.end() - first);
+}
+
+void Timings::prune(double time_ms) {
+  while (!starts_ms_.empty() && starts_ms_.front() <= time_ms) starts_ms_.pop_front();
+}
+
+void Timings::deliver() {
+  for (; sync_delivered_ < records_.size() && records_[sync_delivered_].sync.known; ++sync_delivered_)
+    sync_times_.push_back({records_[sync_delivered_].id, records_[sync_delivered_].sync.time_ms});
+  while (!records_.empty() && records_.front().sync.known && records_.front().start.known && records_.front().end.known) {
+    const Record& record = records_.front();
+    finished_.push_back({record.id, record.sync.time_ms, record.start.time_ms, record.end.time_ms, record.length_uu});
+    records_.pop_front();
+    --sync_delivered_;
+  }
+}
+
+void Timings::take_sync_times(std::vector<SyncTime>& out) {
+  out.insert(out.end(), sync_times_.begin(), sync_times_.end());
+  sync_times_.clear();
+}
+
+void Timings::take(std::vector<MoveTiming>& out) {
+  out.insert(out.end(), finished_.begin(), finished_.end());
+  finished_.clear();
+}
+
+}  // namespace pmac::motion

@@ -1,0 +1,245 @@
+// Control verbs: program control, jogs, enabling and disabling, from programs and from command lines. Source: User's Manual p689-698;
+// jog commands, Software Reference Manual p74; what is not simulated is refused with a reason.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "runtime/state.h"
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ControlVerb;
+using bytecode::ElementId;
+
+/// One verb with its arguments, and what is asked of whom.
+struct Call {
+  Machine::State& s;
+  Runner& runner;
+  ControlVerb verb;
+  std::span<const double> arguments;
+  std::string& refusal;
+
+  double argument(std::size_t i) const { return i < arguments.size() ? arguments[i] : std::nan(""); }
+};
+
+/// Number of the coordinate system or motor a verb acts on; -1 (with a refusal) where there is none.
+int number_or(const Call& call, int addressed, int limit, const char* what) {
+  const double given = call.argument(0);
+  const double number = std::isnan(given) ? addressed : std::trunc(given);
+  if (number >= 0 && number < limit) return static_cast<int>(number);
+  call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no {} {}", what, number);
+  return -1;
+}
+
+int own_coord(const Call& call) {
+  const Runner& r = call.runner;
+  return r.kind == RunnerKind::kMotionProgram || r.kind == RunnerKind::kKinematics ? r.number : r.thread.coord;
+}
+
+Flow abort_coord(const Call& call, CoordSystem& coord, int number) {
+  Runner& r = call.runner;
+  const bool inside = (r.kind == RunnerKind::kMotionProgram || r.kind == RunnerKind::kKinematics) && r.number == number;
+  if (!inside) {
+    coord.abort(call.s.now_ms);
+    return Flow::kContinue;
+  }
+  if (r.kind == RunnerKind::kKinematics) r.aborted = true;
+  else coord.stop_program_from_inside();
+  return Flow::kStop;
+}
+
+Flow begin_coord(const Call& call, CoordSystem& coord) {
+  const double program = call.argument(1);
+  if (!(program >= 0 && program < 4294967296.0)) {
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: program {}", program);
+    return Flow::kContinue;
+  }
+  const double label = std::round((program - std::floor(program)) * 1e6);
+  call.refusal = coord.begin(static_cast<std::uint32_t>(program), label > 0 ? static_cast<std::int64_t>(label) : -1);
+  return Flow::kContinue;
+}
+
+void define_lookahead(const Call& call, CoordSystem& coord) {
+  const double segments = call.argument(1);
+  if (!(segments >= 1 && segments <= 1e8)) call.refusal = "error #23: OUT OF RANGE NUMBER: lookahead buffer size";
+  else if (coord.program_running()) call.refusal = "error #38: PROGRAM RUNNING";
+  else coord.lookahead_buffer = static_cast<int>(segments);
+}
+
+Flow coord_verb(const Call& call) {
+  const int number = number_or(call, own_coord(call), bytecode::kMaxCoords, "coordinate system");
+  if (number < 0) return Flow::kContinue;
+  CoordSystem& coord = call.s.coord(number);
+  switch (call.verb) {
+    case ControlVerb::kAbort: return abort_coord(call, coord, number);
+    case ControlVerb::kBegin: return begin_coord(call, coord);
+    case ControlVerb::kStart:
+      begin_coord(call, coord);
+      if (call.refusal.empty()) call.refusal = coord.run(call.s.now_ms);
+      return Flow::kContinue;
+    case ControlVerb::kRun: call.refusal = coord.run(call.s.now_ms); return Flow::kContinue;
+    case ControlVerb::kPmatch: call.refusal = coord.match_positions(call.s.now_ms); return Flow::kContinue;
+    case ControlVerb::kDefineLookahead: define_lookahead(call, coord); return Flow::kContinue;
+    case ControlVerb::kDeleteLookahead: coord.lookahead_buffer = 0; return Flow::kContinue;
+    case ControlVerb::kEnable:
+    case ControlVerb::kDisable:
+      if (call.verb == ControlVerb::kDisable) coord.abort(call.s.now_ms);
+      for (int motor : coord.motors()) {
+        Motor& m = call.s.motors[static_cast<std::size_t>(motor)];
+        m.closed_loop = m.amplifier_enabled = call.verb == ControlVerb::kEnable;
+        if (call.verb == ControlVerb::kDisable) m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
+      }
+      return Flow::kContinue;
+    case ControlVerb::kReportCoordPosition: {
+      const AxisVector position = coord.commanded_position(call.s.now_ms);
+      std::string text;
+      for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+        if (coord.axes_with_motors() >> axis & 1u)
+          text += fmt::format("{}{}{}", text.empty() ? "" : " ", bytecode::axis_name(axis), position[static_cast<std::size_t>(axis)]);
+      call.s.answer(text);
+      return Flow::kContinue;
+    }
+    default:
+      call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
+      return Flow::kContinue;
+  }
+}
+
+motion::JogParameters jog_parameters(const Machine::State& s, int motor) {
+  const auto n = static_cast<unsigned>(motor);
+  return {s.elements.get(ElementId::kMotorJogSpeed, n), s.elements.get(ElementId::kMotorJogTa, n), s.elements.get(ElementId::kMotorJogTs, n)};
+}
+
+/// Starts or re-targets a jog; a jog counts as one move from rest to rest.
+void jog(const Call& call, Motor& m, const motion::MotorProfile& profile) {
+  if (!m.moving()) {
+    m.jogging = true;
+    m.jog_start_ms = call.s.now_ms;
+    m.jog_start_mu = m.position_mu;
+    m.jog_source = call.runner.thread.source();
+  }
+  m.follow(profile);
+}
+
+void jog_to(const Call& call, Motor& m, double target_mu) {
+  if (!std::isfinite(target_mu)) {
+    call.refusal = fmt::format("error #21: ILLEGAL PARAMETER: jog target {} of motor {}", target_mu, m.number);
+    return;
+  }
+  const double now = call.s.now_ms;
+  jog(call, m, motion::MotorProfile::move(now, m.position_at(now), m.velocity_at(now), target_mu, jog_parameters(call.s, m.number)));
+}
+
+void jog_endless(const Call& call, Motor& m, int direction) {
+  const double now = call.s.now_ms;
+  jog(call, m, motion::MotorProfile::jog(now, m.position_at(now), m.velocity_at(now), direction, jog_parameters(call.s, m.number)));
+}
+
+bool may_jog(const Call& call, const Motor& m) {
+  if (!m.closed_loop) call.refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", m.number);
+  else if (m.coord >= 0 && call.s.coord(m.coord).program_running())
+    call.refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}, which executes a program", m.number, m.coord);
+  return call.refusal.empty();
+}
+
+void home_zero(const Call& call, Motor& m) {
+  const double at = m.position_at(call.s.now_ms);
+  m.home_position_mu += at;
+  m.rest(call.s.now_ms, 0);
+  m.position_mu = 0;
+  m.home_complete = true;
+}
+
+void kill(const Call& call, Motor& m) {
+  if (m.coord >= 0 && call.s.coord(m.coord).program_running()) call.s.coord(m.coord).abort(call.s.now_ms);
+  m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
+  m.closed_loop = m.amplifier_enabled = false;
+}
+
+Flow motor_verb(const Call& call) {
+  const int number = number_or(call, call.runner.thread.motor, bytecode::kMaxMotors, "motor");
+  if (number < 0) return Flow::kContinue;
+  Motor& m = call.s.motors[static_cast<std::size_t>(number)];
+  const double now = call.s.now_ms;
+  switch (call.verb) {
+    case ControlVerb::kReportPosition:
+    case ControlVerb::kReportDesired: call.s.answer(fmt::format("{}", m.position_at(now))); return Flow::kContinue;
+    case ControlVerb::kReportVelocity: call.s.answer(fmt::format("{}", m.velocity_at(now) * call.s.period_ms())); return Flow::kContinue;
+    case ControlVerb::kReportFollowingError: call.s.answer("0"); return Flow::kContinue;
+    case ControlVerb::kKill: kill(call, m); return Flow::kContinue;
+    default: break;
+  }
+  if (call.verb == ControlVerb::kJogStop && !m.closed_loop) m.closed_loop = m.amplifier_enabled = true;  // j/ closes the loop
+  if (!may_jog(call, m)) return Flow::kContinue;
+  const double value = std::isnan(call.argument(1)) ? call.s.elements.get(ElementId::kMotorProgJogPos, static_cast<unsigned>(number))
+                                                    : call.argument(1);
+  switch (call.verb) {
+    case ControlVerb::kJogPlus: jog_endless(call, m, 1); break;
+    case ControlVerb::kJogMinus: jog_endless(call, m, -1); break;
+    case ControlVerb::kJogStop:
+      if (m.moving()) m.follow(motion::MotorProfile::stop(now, m.position_at(now), m.velocity_at(now), jog_parameters(call.s, number)));
+      break;
+    case ControlVerb::kJogTo: jog_to(call, m, value); break;
+    case ControlVerb::kJogToAndKeep: m.prejog_mu = value; jog_to(call, m, value); break;
+    case ControlVerb::kJogBy:
+    case ControlVerb::kJogByActual: jog_to(call, m, m.position_at(now) + value); break;
+    case ControlVerb::kJogReturn: jog_to(call, m, m.prejog_mu); break;
+    case ControlVerb::kHomeZero: home_zero(call, m); break;
+    default: call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
+  }
+  return Flow::kContinue;
+}
+
+Flow plc_verb(const Call& call) {
+  const double given = call.argument(0);
+  if (!(given >= 0 && given < bytecode::kMaxPlcs)) {
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no PLC {}", given);
+    return Flow::kContinue;
+  }
+  const int number = static_cast<int>(given);
+  Plc& plc = call.s.plcs[static_cast<std::size_t>(number)];
+  const auto buffer = call.s.plc_programs.find(static_cast<std::uint32_t>(number));
+  const bool starts = call.verb == ControlVerb::kEnablePlc || call.verb == ControlVerb::kResumePlc;
+  if (starts && buffer == call.s.plc_programs.end()) {
+    call.refusal = fmt::format("error #22: PROGRAM NOT IN BUFFER: there is no PLC program {}", number);
+    return Flow::kContinue;
+  }
+  switch (call.verb) {
+    case ControlVerb::kEnablePlc:
+      if (plc.runner.get() == &call.runner) break;  // enabling itself changes nothing
+      plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
+      plc.runner->thread.begin(buffer->second);
+      plc.active = plc.running = true;
+      break;
+    case ControlVerb::kDisablePlc: plc.active = plc.running = false; break;
+    case ControlVerb::kPausePlc: plc.running = false; break;
+    case ControlVerb::kResumePlc: plc.running = plc.active; break;
+    default: call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
+  }
+  return Flow::kContinue;
+}
+
+bool is_motor_verb(ControlVerb v) {
+  return (v >= ControlVerb::kJogPlus && v <= ControlVerb::kOpenLoop) ||
+         (v >= ControlVerb::kReportPosition && v <= ControlVerb::kReportStatus);
+}
+
+bool is_plc_verb(ControlVerb v) { return v >= ControlVerb::kEnablePlc && v <= ControlVerb::kStepPlc; }
+
+}  // namespace
+
+Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
+  const Call call{s, runner, verb, arguments, refusal};
+  if (is_motor_verb(verb)) return motor_verb(call);
+  if (is_plc_verb(verb)) return plc_verb(call);
+  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) {
+    refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(verb));
+    return Flow::kContinue;
+  }
+  return coord_verb(call);
+}
+
+}  // namespace pmac::runtime

@@ -1,0 +1,155 @@
+// pmac-run: loads programs into a simulated controller, runs simulated time, and writes what came of it.
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include <unistd.h>
+
+#include "compiler/compiler.h"
+#include "runtime/machine.h"
+#include "runtime/tool/emit.h"
+#include "runtime/tool/load.h"
+#include "runtime/tool/options.h"
+#include "runtime/tool/outputs.h"
+#include "runtime/tool/recorder.h"
+#include "runtime/tool/report.h"
+
+namespace {
+
+using namespace pmac;
+using namespace pmac::tool;
+
+std::atomic<bool> g_interrupted{false};
+void interrupt(int) { g_interrupted = true; }
+
+void catch_signals() {
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool shows_progress(const RunOptions& options) { return !options.quiet && isatty(STDERR_FILENO) != 0; }
+
+/// Messages of the machine, as they come: faults and refusals on standard error, answers on standard output.
+runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine) {
+  runtime::MachineObservers o;
+  const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty();
+  o.answer = [quiet = options.quiet, answers_to_stderr](const std::string& text) {
+    if (!quiet) std::fprintf(answers_to_stderr ? stderr : stdout, "%s\n", text.c_str());
+  };
+  o.refused = [](const std::string& text, const std::string& reason) {
+    std::fprintf(stderr, "refused: %s: %s\n", text.c_str(), reason.c_str());
+  };
+  o.move = [&report](const runtime::MoveRecord& move) { report.add(move); };
+  o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
+  o.fault = [&report, &machine](const runtime::FaultRecord& record) {
+    report.add(record);
+    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : "coordinate system " + std::to_string(record.coord);
+    std::fprintf(stderr, "%s: fault at %.6f s, %s: %s\n", machine->place(record.fault.source).c_str(), record.time_ms / 1000.0,
+                 who.c_str(), record.fault.detail.c_str());
+  };
+  if (shows_progress(options))
+    o.progress = [](double time_ms) { std::fprintf(stderr, "\r%.0f s simulated ", time_ms / 1000.0); };
+  return o;
+}
+
+runtime::RunLimits limits(const RunOptions& options) {
+  runtime::RunLimits l;
+  if (options.until_s) l.until_ms = *options.until_s * 1000.0;
+  l.max_ms = options.max_time_s * 1000.0;
+  l.interrupted = [] { return g_interrupted.load(); };
+  return l;
+}
+
+/// Says why a run that did not come to its own end was ended.
+void explain_end(const RunOptions& options, const runtime::RunOutcome& outcome) {
+  if (outcome.end == runtime::RunEnd::kTimeLimit)
+    std::fprintf(stderr, "pmac-run: the time limit of %g s is reached (--max-time)\n", options.max_time_s);
+  else if (outcome.end == runtime::RunEnd::kBudget)
+    std::fprintf(stderr, "pmac-run: the limit of %llu instructions is reached (--max-instructions)\n",
+                 static_cast<unsigned long long>(options.max_instructions));
+  else if (outcome.end == runtime::RunEnd::kInterrupted)
+    std::fprintf(stderr, "pmac-run: interrupted at %.6f s\n", outcome.time_ms / 1000.0);
+  else
+    return;
+  for (const std::string& program : outcome.running) std::fprintf(stderr, "  still running: %s\n", program.c_str());
+}
+
+int exit_code(const runtime::Machine& machine, const runtime::RunOutcome& outcome) {
+  switch (outcome.end) {
+    case runtime::RunEnd::kTimeLimit:
+    case runtime::RunEnd::kBudget: return kExitLimit;
+    case runtime::RunEnd::kInterrupted: return kExitInterrupted;
+    default: return machine.any_fault() || machine.any_refused() ? kExitFault : kExitOk;
+  }
+}
+
+int run(const RunOptions& options) {
+  compiler::Options compile_options;
+  compile_options.include_dirs = options.include_dirs;
+  compile_options.defines = options.defines;
+  compiler::Session session(compile_options);
+  Report report(options.json == JsonDetail::kMoves || options.stats);
+  runtime::Machine* place = nullptr;
+  runtime::MachineOptions machine_options;
+  machine_options.fine = options.fine;
+  machine_options.ramp_rule = options.ramp_rule;
+  machine_options.limit_jerk = options.limit_jerk;
+  machine_options.max_instructions = options.max_instructions;
+  machine_options.compile_online = online_compiler(session);
+  machine_options.observers = observers(options, report, place);
+  Emitter emitter(options.emit);
+  emitter.attach(machine_options.observers);
+  runtime::Machine machine(machine_options);
+  place = &machine;
+
+  runtime::MotionStatistics statistics;
+  Recorder recorder(machine);
+  Outputs outputs(options, machine, recorder);
+  machine.add_sink(&statistics);
+  machine.add_sink(&recorder);
+  emitter.attach(machine, recorder);
+
+  if (const int code = load_files(options, session, machine); code != kExitOk) return code;
+  for (const std::string& text : options.commands) machine.command(text, "-e");
+  for (const auto& [time_s, text] : options.timed_commands) machine.at(time_s * 1000.0, text);
+
+  const auto wall_start = std::chrono::steady_clock::now();
+  const runtime::RunOutcome outcome = machine.run(limits(options));
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
+  if (shows_progress(options)) std::fprintf(stderr, "\r                              \r");
+  recorder.finish();
+  explain_end(options, outcome);
+  const bool written = outputs.finish();
+  if (options.stats) {
+    std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() ? stdout : stderr;
+    std::fputs(report.text(machine, outcome, statistics, wall_s).c_str(), out);
+    std::fputs(report.output_log(machine).c_str(), out);
+  }
+  if (options.json != JsonDetail::kNone) std::fputs(report.json(machine, outcome, statistics, options.json).c_str(), stdout);
+  if (std::fflush(stdout) != 0 || !written) {
+    if (written) std::perror("pmac-run: standard output");
+    return kExitUsage;
+  }
+  return exit_code(machine, outcome);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    RunOptions options;
+    if (const auto code = parse_options(argc, argv, options)) return *code;
+    if (const std::string file = unknown_ending(options); !file.empty()) {
+      std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
+      return kExitUsage;
+    }
+    catch_signals();
+    return run(options);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "pmac-run: internal error: %s\n", e.what());
+    return kExitInternal;
+  }
+}

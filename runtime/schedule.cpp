@@ -1,0 +1,189 @@
+// Simulated time: from event to event, with runs of servo samples between. At one instant the order is: servo samples, synchronous
+// assignments and programs of the coordinate systems, commands given for this time, foreground PLCs, background PLCs.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/state.h"
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ElementId;
+
+constexpr int kBlockTicks = 256;                 // samples of one block
+constexpr std::uint64_t kPlcBudget = 1'000'000;  // instructions of one scan
+constexpr double kDefaultBackgroundMs = 1.0;
+constexpr double kProgressMs = 1000.0;
+
+double background_period_ms(const Machine::State& s) {
+  const double sleep_us = s.elements.get(ElementId::kSysBgSleepTime);
+  return std::max(sleep_us / 1000.0, kDefaultBackgroundMs);
+}
+
+bool is_foreground(const Machine::State& s, int plc) { return plc <= s.elements.get(ElementId::kSysMaxRtPlc); }
+
+}  // namespace
+
+double Machine::State::next_rti_ms(double time_ms) const {
+  const auto every = static_cast<std::int64_t>(elements.get(ElementId::kSysRtIntPeriod)) + 1;
+  auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
+  while (tick_ms(n * every) <= time_ms) ++n;
+  return tick_ms(n * every);
+}
+
+double Machine::State::rti_at_or_after_ms(double time_ms) const {
+  const auto every = static_cast<std::int64_t>(elements.get(ElementId::kSysRtIntPeriod)) + 1;
+  auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
+  while (tick_ms(n * every) < time_ms) ++n;
+  return tick_ms(n * every);
+}
+
+bool Machine::State::anything_runs() const {
+  const auto runs = [](const auto& c) { return c->program_running(); };
+  const auto moves = [](const Motor& m) { return m.moving(); };
+  return !timed.empty() || std::any_of(coords.begin(), coords.end(), runs) || std::any_of(motors.begin(), motors.end(), moves);
+}
+
+void Machine::State::update_idle(double time_ms) {
+  const bool idle = !anything_runs();
+  if (idle && !is_idle) idle_since_ms = time_ms;
+  is_idle = idle;
+}
+
+double Machine::State::next_event_ms(double limit_ms) {
+  double next = limit_ms;
+  for (const auto& c : coords) next = std::min(next, c->next_event_ms());
+  for (const Motor& m : motors)
+    if (m.source == Motor::Source::kProfile) next = std::min(next, m.profile.end_ms());
+  if (!timed.empty()) next = std::min(next, timed.front().time_ms);
+  bool foreground = false, background = false;
+  for (const Plc& plc : plcs) {
+    if (!plc.running) continue;
+    (is_foreground(*this, plc.runner->number) ? foreground : background) = true;
+  }
+  if (foreground) next = std::min(next, next_rti_ms(now_ms));
+  if (background) next = std::min(next, last_background_ms + background_period_ms(*this));
+  return std::max(next, now_ms);
+}
+
+void Machine::State::sample_to(double time_ms) {
+  if (tick_ms(tick + 1) > time_ms) return;
+  std::vector<int>& used = block_motors;
+  used.clear();
+  for (const Motor& m : motors)
+    if (m.in_use) used.push_back(m.number);
+  const bool single = gather.enabled() && gather.needs_single_ticks();
+  std::vector<double>& rows = block_rows;
+  std::vector<double>& path = block_path;
+  rows.resize(bytecode::kMaxMotors * kBlockTicks);
+  path.resize(bytecode::kMaxMotors * kBlockTicks);
+  while (tick_ms(tick + 1) <= time_ms) {
+    int count = 1;
+    while (!single && count < kBlockTicks && tick_ms(tick + 1 + count) <= time_ms) ++count;
+    const double start_ms = tick_ms(tick + 1);
+    const auto n = static_cast<std::size_t>(count);
+    for (std::size_t u = 0; u < used.size(); ++u) {
+      const Motor& m = motors[static_cast<std::size_t>(used[u])];
+      for (std::size_t k = 0; k < n; ++k) rows[u * n + k] = m.position_at(start_ms + static_cast<double>(k) * period_ms());
+    }
+    for (const auto& c : coords) {
+      if (!c->on_path()) continue;
+      const std::vector<int>& path_motors = c->path_motors();
+      c->sample(start_ms, period_ms(), count, std::span<double>(path.data(), path_motors.size() * n));
+      for (std::size_t i = 0; i < path_motors.size(); ++i) {
+        const auto at = static_cast<std::size_t>(std::find(used.begin(), used.end(), path_motors[i]) - used.begin());
+        std::copy_n(path.begin() + static_cast<std::ptrdiff_t>(i * n), n, rows.begin() + static_cast<std::ptrdiff_t>(at * n));
+      }
+    }
+    const SampleBlock block{tick + 1, period_ms(), count, used, std::span<const double>(rows.data(), used.size() * n)};
+    tick += count;
+    now_ms = std::max(now_ms, tick_ms(tick));
+    for (SampleSink* sink : sinks) sink->take(block);
+    if (gather.enabled())
+      gather.take(block, static_cast<int>(elements.get(ElementId::kGatherPeriod)),
+                  static_cast<std::int64_t>(elements.get(ElementId::kGatherMaxSamples)),
+                  [this](const ElementAddress& a) { return read_element_value(*this, *online, a); });
+  }
+}
+
+void Machine::State::scan(int number, double) {
+  Plc& plc = plcs[static_cast<std::size_t>(number)];
+  Thread& thread = plc.runner->thread;
+  thread.reset_jump_backs();
+  const RunResult result = thread.run(*host, kPlcBudget, 1);
+  instructions += result.instructions;
+  switch (result.stop) {
+    case RunStop::kEnded: thread.restart(); break;
+    case RunStop::kBudget:
+    case RunStop::kJumpBack:
+    case RunStop::kSuspended: break;
+    case RunStop::kFault:
+      plc.active = plc.running = false;
+      report_fault({now_ms, -1, number, *result.fault});
+      break;
+  }
+  execute_queued_commands();
+}
+
+void Machine::State::scan_plcs(double time_ms) {
+  const bool at_rti = rti_at_or_after_ms(time_ms) == time_ms;
+  const bool at_background = time_ms >= last_background_ms + background_period_ms(*this);
+  for (int n = 0; n < bytecode::kMaxPlcs; ++n) {
+    const bool foreground = is_foreground(*this, n);
+    if (plcs[static_cast<std::size_t>(n)].running && (foreground ? at_rti : at_background)) scan(n, time_ms);
+  }
+  if (at_background) last_background_ms = time_ms;
+}
+
+void Machine::State::service(double time_ms) {
+  for (Motor& m : motors) {
+    m.settle(time_ms);
+    if (!m.jogging || m.moving()) continue;
+    m.jogging = false;
+    if (options.observers.move)
+      options.observers.move({"jog", m.jog_source, -1, m.number, m.jog_start_ms, m.rest_since_ms, std::abs(m.position_mu - m.jog_start_mu)});
+  }
+  for (const auto& c : coords) c->service(time_ms);
+  execute_queued_commands();
+  while (!timed.empty() && timed.front().time_ms <= time_ms) {
+    const std::string text = timed.front().text;
+    timed.erase(timed.begin());
+    command(text, "--at");
+  }
+  scan_plcs(time_ms);
+}
+
+RunOutcome Machine::State::run(const RunLimits& limits) {
+  const double stop_ms = std::min(limits.until_ms.value_or(limits.max_ms), limits.max_ms);
+  double next_progress_ms = kProgressMs;
+  RunOutcome outcome;
+  sample_to(now_ms);
+  for (std::uint64_t event = 0;; ++event) {
+    service(now_ms);
+    update_idle(now_ms);
+    const double idle_end_ms = is_idle && !limits.until_ms ? idle_since_ms + limits.idle_ms : kNever;
+    if (now_ms >= idle_end_ms) { outcome.end = RunEnd::kIdle; break; }
+    if (now_ms >= stop_ms) { outcome.end = limits.until_ms && *limits.until_ms <= limits.max_ms ? RunEnd::kUntil : RunEnd::kTimeLimit; break; }
+    if (instructions > options.max_instructions) { outcome.end = RunEnd::kBudget; break; }
+    if (limits.interrupted && event % 256 == 0 && limits.interrupted()) { outcome.end = RunEnd::kInterrupted; break; }
+    if (now_ms >= next_progress_ms) {
+      if (options.observers.progress) options.observers.progress(now_ms);
+      next_progress_ms = now_ms + kProgressMs;
+    }
+    const double next = next_event_ms(std::min({stop_ms, idle_end_ms, next_progress_ms}));
+    sample_to(next);
+    now_ms = next;
+  }
+  outcome.time_ms = now_ms;
+  for (const auto& c : coords)
+    if (c->program_running())
+      outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->runner().thread.source())));
+  sample_to(tick_ms(tick) >= now_ms ? now_ms : tick_ms(tick + 1));
+  outcome.ticks = tick;
+  outcome.instructions = instructions;
+  return outcome;
+}
+
+}  // namespace pmac::runtime

@@ -1,0 +1,121 @@
+// Inside the runtime: everything that one simulated controller is. The stages that work on it are functions and classes in files of
+// their own: host.cpp (what programs reach), online.cpp (commands), schedule.cpp (time), coordinate/ (programs that move).
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/coordinate/coord_system.h"
+#include "runtime/element_store.h"
+#include "runtime/gather_unit.h"
+#include "runtime/interpreter/interpreter.h"
+#include "runtime/io/io_space.h"
+#include "runtime/io/pointer_table.h"
+#include "runtime/machine.h"
+#include "runtime/motor.h"
+#include "runtime/runner.h"
+
+namespace pmac::runtime {
+
+/// A PLC program and its scan state.
+struct Plc {
+  std::unique_ptr<Runner> runner;
+  bool active = false, running = false;
+};
+
+/// A line of commands waiting for its time.
+struct TimedCommand { double time_ms; std::string text; };
+
+/// A cmd "..." of a program, executed at the end of the pass that queued it. sender: see command_addresses.
+struct QueuedCommand { int sender; std::string text; bytecode::SourceLine source; };
+
+/// What & and # address in the command lines of one sender.
+struct Addresses { int coord = 1, motor = 1; };
+
+struct Machine::State {
+  explicit State(MachineOptions options);
+  ~State();
+
+  MachineOptions options;
+  ElementStore elements;
+  std::vector<double> p, i_values;
+  IoSpace io;
+  PointerTable pointers;
+  std::array<Motor, bytecode::kMaxMotors> motors;
+  std::vector<std::unique_ptr<CoordSystem>> coords;
+  std::array<Plc, bytecode::kMaxPlcs> plcs;
+  std::unique_ptr<Runner> online;                    // the command thread: files, -e, --at, console
+  std::unique_ptr<Host> host;
+  std::map<std::uint32_t, ProgramHandle> progs, subprogs, plc_programs;
+  std::vector<std::string> files;                    // of all modules
+  std::shared_ptr<const bytecode::Module> loading;   // module whose load script is executing
+  GatherUnit gather;
+
+  // time
+  std::int64_t tick = -1;                            // last servo interrupt that has been sampled; -1: none yet
+  double now_ms = 0;                                 // last event
+  double last_background_ms = 0;
+  std::vector<TimedCommand> timed;                   // ascending time
+  std::deque<QueuedCommand> queued;
+  std::map<int, Addresses> command_addresses;        // by sender_key()
+  std::vector<SampleSink*> sinks;
+  std::vector<int> block_motors;                     // of sample_to(), kept so that a block costs no allocation
+  std::vector<double> block_rows, block_path;
+
+  // bookkeeping
+  std::uint64_t instructions = 0;
+  std::uint64_t random_state = 0x9e3779b97f4a7c15ull;
+  bool any_fault = false, any_refused = false;
+  double idle_since_ms = 0;
+  bool is_idle = true;
+
+  double period_ms() const { return elements.get(bytecode::ElementId::kSysServoPeriod); }
+  double rti_period_ms() const { return period_ms() * (elements.get(bytecode::ElementId::kSysRtIntPeriod) + 1); }
+  double tick_ms(std::int64_t k) const { return static_cast<double>(k) * period_ms(); }
+  /// First real-time interrupt after time_ms (strictly).
+  double next_rti_ms(double time_ms) const;
+  /// First real-time interrupt at or after time_ms.
+  double rti_at_or_after_ms(double time_ms) const;
+  CoordSystem& coord(int number) { return *coords[static_cast<std::size_t>(number)]; }
+
+  void report_fault(const FaultRecord& record);
+  void answer(const std::string& text);
+  void refuse(const std::string& text, const std::string& reason);
+  std::string place(bytecode::SourceLine source) const;
+  /// Runs a program to its end or budget on the command thread.
+  void run_load_script(ProgramHandle program);
+  void execute_queued_commands();
+  static int sender_key(const Runner& runner) { return static_cast<int>(runner.kind) * 100 + runner.number; }
+  bool executes(bytecode::ProgramKind kind, std::uint32_t number) const;
+  void install(ProgramHandle handle);
+  void load(bytecode::Module module);
+  void command(std::string_view text, std::string_view name);
+  /// Stores what a synchronous assignment stores.
+  void perform(const SyncEntry& entry, CoordSystem& from);
+
+  // schedule.cpp
+  RunOutcome run(const RunLimits& limits);
+  double next_event_ms(double limit_ms);
+  void sample_to(double time_ms);
+  void service(double time_ms);
+  void scan_plcs(double time_ms);
+  void scan(int plc, double time_ms);
+  void update_idle(double time_ms);
+  bool anything_runs() const;
+};
+
+/// Control verbs of programs and command lines (online.cpp). refusal: filled where the controller would answer an error.
+Flow execute_control(Machine::State& state, Runner& runner, bytecode::ControlVerb verb, std::span<const double> arguments,
+                     std::string& refusal);
+
+/// Value of a status element at the present time, or of a stored one (status.cpp).
+double read_element_value(Machine::State& state, Runner& runner, const ElementAddress& address);
+
+std::unique_ptr<Host> make_host(Machine::State& state);
+
+}  // namespace pmac::runtime

@@ -1,0 +1,97 @@
+// Status elements: what a program reads of motors, coordinate systems and the clock at the present time. Source: status bits,
+// User's Manual p683-694; in-position, training material.
+#include <algorithm>
+
+#include "runtime/state.h"
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ElementId;
+
+bool motor_in_position(const Machine::State& s, const Motor& m) {
+  if (!m.closed_loop || m.moving()) return false;
+  if (m.coord >= 0 && s.coords[static_cast<std::size_t>(m.coord)]->dwelling()) return false;
+  const double checks = s.elements.get(ElementId::kMotorInPosTime, static_cast<unsigned>(m.number)) + 1;
+  return m.checks_at_rest(s.now_ms, s.period_ms()) >= checks;  // the ideal servo has no following error
+}
+
+double motor_value(Machine::State& s, ElementId id, const Motor& m) {
+  const double raw_mu = m.home_position_mu + m.position_at(s.now_ms);
+  switch (id) {
+    case ElementId::kMotorDesPos:
+    case ElementId::kMotorActPos: return raw_mu;
+    case ElementId::kMotorHomePos: return m.home_position_mu;
+    case ElementId::kMotorDesVel:
+    case ElementId::kMotorActVel: return m.velocity_at(s.now_ms) * s.period_ms();
+    case ElementId::kMotorPosError: return 0;
+    case ElementId::kMotorInPos: return motor_in_position(s, m);
+    case ElementId::kMotorDesVelZero: return !m.moving();
+    case ElementId::kMotorClosedLoop: return m.closed_loop;
+    case ElementId::kMotorAmpEna: return m.amplifier_enabled;
+    case ElementId::kMotorHomeComplete: return m.home_complete;
+    case ElementId::kMotorCoord: return std::max(m.coord, 0);
+    default: return s.elements.get(id, static_cast<unsigned>(m.number));
+  }
+}
+
+/// AND of a motor status bit over the motors of a coordinate system.
+bool all_motors(Machine::State& s, const CoordSystem& c, ElementId id) {
+  for (int motor : c.motors())
+    if (motor_value(s, id, s.motors[static_cast<std::size_t>(motor)]) == 0) return false;
+  return true;
+}
+
+double coord_value(Machine::State& s, const ElementAddress& a) {
+  CoordSystem& c = s.coord(static_cast<int>(a.index[0]));
+  switch (a.id) {
+    case ElementId::kCoordInPos: return all_motors(s, c, ElementId::kMotorInPos);
+    case ElementId::kCoordHomeComplete: return all_motors(s, c, ElementId::kMotorHomeComplete);
+    case ElementId::kCoordDesVelZero: return all_motors(s, c, ElementId::kMotorDesVelZero);
+    case ElementId::kCoordClosedLoop: return all_motors(s, c, ElementId::kMotorClosedLoop);
+    case ElementId::kCoordAmpEna: return all_motors(s, c, ElementId::kMotorAmpEna);
+    case ElementId::kCoordCsolve: return c.map().solvable();
+    case ElementId::kCoordProgRunning:
+    case ElementId::kCoordProgProceeding:
+    case ElementId::kCoordProgActive: return c.program_running();
+    case ElementId::kCoordSegEnabled: return s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
+    case ElementId::kCoordLookAheadActive:
+      return c.lookahead_buffer > 0 && s.elements.get(ElementId::kCoordLHDistance, a.index[0]) > 1 &&
+             s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
+    case ElementId::kCoordMoveMode: return static_cast<double>(c.modal.mode);
+    case ElementId::kCoordNumMotors: return static_cast<double>(c.motors().size());
+    case ElementId::kCoordDesPos: return c.commanded_position(s.now_ms)[a.index[1]];
+    case ElementId::kCoordCdPos: return c.calculated_position()[a.index[1]];
+    case ElementId::kCoordQ: return c.q[a.index[1]];
+    default: return s.elements.get(a);
+  }
+}
+
+bool belongs_to(ElementId id, ElementId first, ElementId last) { return id >= first && id <= last; }
+
+}  // namespace
+
+double read_element_value(Machine::State& s, Runner& runner, const ElementAddress& a) {
+  switch (a.id) {
+    case ElementId::kSysTime:
+    case ElementId::kSysRunTime: return s.now_ms / 1000.0;
+    case ElementId::kSysServoCount: return static_cast<double>(std::max<std::int64_t>(s.tick, 0));
+    case ElementId::kSysCdTimer: return std::max(0.0, s.elements.get(a) - s.now_ms);  // stored as the time at which it is 0
+    case ElementId::kSysP: return s.p[a.index[0]];
+    case ElementId::kLdataCoord: return runner.thread.coord;
+    case ElementId::kLdataMotor: return runner.thread.motor;
+    case ElementId::kLdataGoBack: return runner.thread.go_back;
+    case ElementId::kLdataCmdStatus: return runner.thread.command_status;
+    case ElementId::kLdataStatus: return runner.kind == RunnerKind::kKinematics ? 0x40 : 0;
+    case ElementId::kGatherEnable: return s.gather.enable();
+    case ElementId::kGatherSamples: return static_cast<double>(s.gather.samples());
+    case ElementId::kPlcActive: return s.plcs[a.index[0]].active;
+    case ElementId::kPlcRunning: return s.plcs[a.index[0]].running;
+    default: break;
+  }
+  if (belongs_to(a.id, ElementId::kMotorServoCtrl, ElementId::kMotorCoord)) return motor_value(s, a.id, s.motors[a.index[0]]);
+  if (belongs_to(a.id, ElementId::kCoordTa, ElementId::kCoordCdPos)) return coord_value(s, a);
+  return s.elements.get(a);
+}
+
+}  // namespace pmac::runtime

@@ -1,0 +1,110 @@
+#include "runtime/tool/load.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include <unistd.h>
+
+#include "compiler/bytecode/object_file.h"
+#include "compiler/source/format.h"
+
+namespace pmac::tool {
+namespace {
+
+std::span<const std::uint8_t> as_bytes(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+bool use_color() { return isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
+
+/// The first error of a text, as the answer to a command.
+std::string first_error(const std::vector<source::Diagnostic>& diagnostics) {
+  for (const source::Diagnostic& d : diagnostics)
+    if (d.severity == source::Severity::kError) return d.message;
+  return {};
+}
+
+/// Prints what the session has to say and forgets it. True if there were errors.
+bool print_diagnostics(compiler::Session& session) {
+  const bool errors = session.diagnostics().has_errors();
+  for (const source::Diagnostic& diagnostic : session.diagnostics().take())
+    std::fputs(source::format_text(session.sources(), diagnostic, use_color()).c_str(), stderr);
+  return errors;
+}
+
+int compile_pending(std::vector<compiler::InputFile>& pending, compiler::Session& session, runtime::Machine& machine) {
+  if (pending.empty()) return kExitOk;
+  auto module = session.compile(pending);
+  pending.clear();
+  const bool errors = print_diagnostics(session);
+  if (!module || errors) return kExitProgramError;
+  if (const std::string reason = bytecode::verify(*module); !reason.empty()) {
+    std::fprintf(stderr, "pmac-run: internal error: the compiler produced an invalid module: %s\n", reason.c_str());
+    return kExitInternal;
+  }
+  machine.load(std::move(*module));
+  return kExitOk;
+}
+
+int load_object(const std::string& name, const std::string& bytes, compiler::Session& session, runtime::Machine& machine) {
+  auto loaded = bytecode::load(as_bytes(bytes));
+  if (const auto* error = std::get_if<bytecode::ObjectFileError>(&loaded)) {
+    std::fprintf(stderr, "pmac-run: %s: %s\n", name.c_str(), error->message.c_str());
+    return kExitUsage;
+  }
+  auto& module = std::get<bytecode::Module>(loaded);
+  session.adopt(module);
+  machine.load(std::move(module));
+  return kExitOk;
+}
+
+}  // namespace
+
+bool read_file(const std::string& name, std::string& bytes) {
+  std::error_code error;
+  if (std::filesystem::is_directory(name, error)) {
+    errno = EISDIR;
+    return false;
+  }
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), std::fclose);
+  if (!file) return false;
+  char buffer[65536];
+  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file.get())) > 0;) bytes.append(buffer, n);
+  return std::ferror(file.get()) == 0;
+}
+
+int load_files(const RunOptions& options, compiler::Session& session, runtime::Machine& machine) {
+  std::vector<compiler::InputFile> pending;
+  for (const std::string& name : options.files) {
+    std::string text;
+    if (!read_file(name, text)) {
+      std::fprintf(stderr, "pmac-run: cannot read %s: %s\n", name.c_str(), std::strerror(errno));
+      return kExitUsage;
+    }
+    const bool object = bytecode::looks_like_object_file(as_bytes(text)) || name.ends_with(".pmx");
+    if (!object) {
+      pending.push_back({name, std::move(text)});
+      continue;
+    }
+    if (const int code = compile_pending(pending, session, machine); code != kExitOk) return code;
+    if (const int code = load_object(name, text, session, machine); code != kExitOk) return code;
+  }
+  return compile_pending(pending, session, machine);
+}
+
+runtime::OnlineCompiler online_compiler(compiler::Session& session) {
+  return [&session](std::string_view text, std::string_view name) -> std::variant<bytecode::Module, std::string> {
+    auto module = session.compile_online(text, name);
+    const std::string reason = first_error(session.diagnostics().take());
+    if (!reason.empty()) return reason;
+    if (!module) return std::string("error #20: ILLEGAL CMD");
+    if (const std::string invalid = bytecode::verify(*module); !invalid.empty()) return "internal error: " + invalid;
+    return std::move(*module);
+  };
+}
+
+}  // namespace pmac::tool

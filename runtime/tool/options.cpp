@@ -1,0 +1,86 @@
+#include "runtime/tool/options.h"
+
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+
+namespace pmac::tool {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  pmac-run setup.cfg oval.pmc -e '&1 b5r' --plot oval.svg
+  pmac-run contour.pmx -e '&1 b4r' --stats --record contour.csv
+  pmac-run laser.pmc -e 'LoopCtrlInput=1 &1 b3r' --at 2.5 'LoopCtrlInput=0' --json
+  pmac-run moves.pmc -e '&1 b1r' --emit=path
+
+Exit codes: 0 ok, 1 errors in the program, 2 usage or unreadable file, 3 simulated fault or refused command,
+4 time or instruction limit reached, 70 internal error.)";
+
+constexpr double kMaxSeconds = 1e9;
+
+std::string check_seconds(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const bool number = !text.empty() && *end == '\0' && std::isfinite(value) && value >= 0 && value <= kMaxSeconds;
+  return number ? std::string() : "'" + text + "' is not a time in seconds";
+}
+
+}  // namespace
+
+std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
+  CLI::App app{"Runs motion programs on a simulated controller: files load in order, -e commands run at time 0.", "pmac-run"};
+  app.footer(kFooter);
+  app.set_version_flag("--version", "pmac-run 0.1.0");
+  std::string until = "idle", fine = "through", ramp = "power", json, max_time = "3600";
+  std::vector<std::string> defines, at;
+  app.add_option("FILE", o.files, "programs, set-up files or compiled modules (.pmx), loaded in order")->required();
+  app.add_option("-e,--execute", o.commands, "on-line commands, executed at time 0")->type_name("COMMANDS")->allow_extra_args(false);
+  app.add_option("--at", at, "on-line commands at a simulated time in seconds")->type_name("TIME COMMANDS")->type_size(2)->expected(0, 10'000'000)->allow_extra_args(false);
+  app.add_option("--until", until, "run to this simulated time in seconds, or until idle")->type_name("idle|TIME")->capture_default_str();
+  app.add_option("--max-time", max_time, "give up at this simulated time in seconds")->type_name("TIME")->capture_default_str();
+  app.add_option("--max-instructions", o.max_instructions, "give up after so many instructions")->capture_default_str();
+  app.add_option("--record", o.record, "write every servo sample to a .csv or .npz file")->type_name("FILE");
+  app.add_option("--gather", o.gather, "write what the program gathers to a .csv, .npz or .txt file")->type_name("FILE");
+  app.add_option("--plot", o.plots, "draw path and motion to a .svg, .png or .html file")->type_name("FILE")->allow_extra_args(false);
+  app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo"}));
+  app.add_flag("--stats", o.stats, "print times, speeds and accelerations at the end");
+  app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
+  app.add_flag("--check-limits", o.check_limits, "compare every motor's speed and acceleration with its limits; exit 3 on a violation");
+  app.add_flag("--limit-jerk", o.limit_jerk, "hold Motor[].InvJmax in the lookahead where the path allows it");
+  app.add_option("--fine", fine, "fine interpolation between segments")->check(CLI::IsMember({"through", "bspline"}))->capture_default_str();
+  app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
+  app.add_option("-I", o.include_dirs, "folder for #include")->type_name("DIR")->allow_extra_args(false);
+  app.add_option("-D", defines, "define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
+  app.add_flag("-q,--quiet", o.quiet, "no progress, no answers of commands");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kExitOk : kExitUsage;
+  }
+  const auto usage = [](const std::string& message) {
+    std::fprintf(stderr, "pmac-run: %s\nRun with --help for more information.\n", message.c_str());
+    return kExitUsage;
+  };
+  if (at.size() % 2 != 0) return usage("--at needs a time and a command");
+  for (std::size_t i = 0; i + 1 < at.size(); i += 2) {
+    if (const std::string bad = check_seconds(at[i]); !bad.empty()) return usage("--at: " + bad);
+    o.timed_commands.emplace_back(std::stod(at[i]), at[i + 1]);
+  }
+  if (until != "idle") {
+    if (const std::string bad = check_seconds(until); !bad.empty()) return usage("--until: " + bad);
+    o.until_s = std::stod(until);
+  }
+  if (const std::string bad = check_seconds(max_time); !bad.empty()) return usage("--max-time: " + bad);
+  o.max_time_s = std::stod(max_time);
+  for (const std::string& define : defines) {
+    const std::size_t equals = define.find('=');
+    o.defines.emplace_back(define.substr(0, equals), equals == std::string::npos ? "1" : define.substr(equals + 1));
+  }
+  o.json = json.empty() ? JsonDetail::kNone : json == "summary" ? JsonDetail::kSummary : JsonDetail::kMoves;
+  if (!json.empty() && json != "summary" && json != "moves") return usage("--json takes 'moves' or 'summary'");
+  o.fine = fine == "bspline" ? motion::FineInterpolation::kBspline : motion::FineInterpolation::kThrough;
+  o.ramp_rule = ramp == "turbo" ? motion::RampRule::kTurbo : motion::RampRule::kPower;
+  return std::nullopt;
+}
+
+}  // namespace pmac::tool

@@ -1,0 +1,39 @@
+// The command line of pmac-run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/motion/types.h"
+
+namespace pmac::tool {
+
+enum class JsonDetail { kNone, kMoves, kSummary };
+
+struct RunOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> include_dirs;
+  std::vector<std::pair<std::string, std::string>> defines;
+  std::vector<std::string> commands;                          // -e, in order, at time 0
+  std::vector<std::pair<double, std::string>> timed_commands; // --at seconds, text
+  std::optional<double> until_s;                              // absent: until idle
+  double max_time_s = 3600;
+  std::uint64_t max_instructions = 20'000'000'000;
+  std::string record, gather;
+  std::vector<std::string> plots;
+  std::string emit;
+  bool stats = false, check_limits = false, limit_jerk = false, quiet = false;
+  JsonDetail json = JsonDetail::kNone;
+  motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
+  motion::RampRule ramp_rule = motion::RampRule::kPower;
+};
+
+inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,
+                     kExitInterrupted = 130;
+
+/// Reads the command line. Returns an exit code where the run is over already (help, version, usage error).
+std::optional<int> parse_options(int argc, char** argv, RunOptions& options);
+
+}  // namespace pmac::tool

@@ -1,0 +1,98 @@
+#include "runtime/tool/outputs.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "runtime/gather/plot.h"
+
+namespace pmac::tool {
+
+std::string unknown_ending(const RunOptions& options) {
+  for (const std::string& file : {options.record, options.gather})
+    if (!file.empty() && !runtime::table_format_of(file)) return file;
+  for (const std::string& file : options.plots)
+    if (!runtime::plot_format_of(file)) return file;
+  return {};
+}
+
+Outputs::Outputs(const RunOptions& options, runtime::Machine& machine, Recorder& recorder) : options_(options) {
+  if (!options.record.empty()) record(recorder);
+  if (!options.gather.empty()) gather(machine);
+  if (!options.plots.empty()) keep_for_plots(recorder);
+}
+
+void Outputs::fail(const std::string& message) {
+  if (!failed_) std::fprintf(stderr, "pmac-run: %s\n", message.c_str());
+  failed_ = true;
+}
+
+void Outputs::record(Recorder& recorder) {
+  recorder.add_sink({[this](const std::vector<std::string>& columns) {
+                       try {
+                         record_ = runtime::make_table_writer(*runtime::table_format_of(options_.record), options_.record, columns);
+                       } catch (const std::exception& e) { fail(e.what()); }
+                     },
+                     [this](std::span<const double> rows) {
+                       try {
+                         if (record_ && !failed_) record_->append(rows);
+                       } catch (const std::exception& e) { fail(e.what()); }
+                     }});
+}
+
+void Outputs::gather(runtime::Machine& machine) {
+  machine.set_gather_sink({[this](const std::vector<std::string>& columns) {
+                             try {
+                               gather_ = runtime::make_table_writer(*runtime::table_format_of(options_.gather), options_.gather, columns);
+                             } catch (const std::exception& e) { fail(e.what()); }
+                           },
+                           [this](std::span<const double> row) {
+                             try {
+                               if (gather_ && !failed_) gather_->append(row);
+                             } catch (const std::exception& e) { fail(e.what()); }
+                           }});
+}
+
+void Outputs::keep_for_plots(Recorder& recorder) {
+  recorder.add_sink({[this](const std::vector<std::string>& columns) {
+                       plot_columns_ = columns;
+                       plot_values_.resize(columns.size());
+                     },
+                     [this](std::span<const double> rows) {
+                       const std::size_t width = plot_columns_.size();
+                       for (std::size_t i = 0; i < rows.size(); ++i) plot_values_[i % width].push_back(rows[i]);
+                     }});
+}
+
+bool Outputs::finish() {
+  try {
+    if (record_ && !failed_) record_->finish();
+    if (gather_ && !failed_) gather_->finish();
+    if (!options_.gather.empty() && !gather_ && !failed_)
+      std::fprintf(stderr, "pmac-run: nothing was gathered, %s is not written; set Gather.Enable = 2 in the program\n", options_.gather.c_str());
+    if (!options_.plots.empty() && !failed_) draw();
+  } catch (const std::exception& e) {
+    fail(e.what());
+  }
+  return !failed_;
+}
+
+/// Curves of the picture: the axes; the motors where no axis is defined. The path panel shows the first two axes.
+void Outputs::draw() {
+  runtime::PlotData data;
+  const auto is_motor = [](const std::string& name) { return name.starts_with("Motor["); };
+  const bool axes = std::any_of(plot_columns_.begin() + 1, plot_columns_.end(), [&](const auto& name) { return !is_motor(name); });
+  data.length_unit = axes ? "" : "motor units";
+  data.time_s = std::move(plot_values_[0]);
+  for (std::size_t c = 1; c < plot_columns_.size(); ++c)
+    if (is_motor(plot_columns_[c]) != axes) data.curves.push_back({plot_columns_[c], std::move(plot_values_[c])});
+  const auto index_of = [&](const char* name) {
+    const auto at = std::find_if(data.curves.begin(), data.curves.end(), [&](const auto& curve) { return curve.name == name; });
+    return static_cast<std::size_t>(at - data.curves.begin());
+  };
+  if (axes && index_of("X") < data.curves.size() && index_of("Y") < data.curves.size()) data.path = {index_of("X"), index_of("Y")};
+  else if (axes && data.curves.size() >= 2) data.path = {0, 1};
+  for (const std::string& file : options_.plots) runtime::draw(data, *runtime::plot_format_of(file), file);
+}
+
+}  // namespace pmac::tool

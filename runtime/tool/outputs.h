@@ -1,0 +1,39 @@
+// The files of a run: --record, --gather, --plot. Each gets its name only when it is complete.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/gather/table_writer.h"
+#include "runtime/machine.h"
+#include "runtime/tool/options.h"
+#include "runtime/tool/recorder.h"
+
+namespace pmac::tool {
+
+class Outputs {
+ public:
+  /// Hooks the writers into the recorder and the machine's gathering.
+  Outputs(const RunOptions& options, runtime::Machine& machine, Recorder& recorder);
+  /// Completes every file; false (and a message) where one could not be written.
+  bool finish();
+
+ private:
+  void record(Recorder& recorder);
+  void gather(runtime::Machine& machine);
+  void keep_for_plots(Recorder& recorder);
+  void fail(const std::string& message);
+  void draw();
+
+  const RunOptions& options_;
+  std::unique_ptr<runtime::TableWriter> record_, gather_;
+  std::vector<std::string> plot_columns_;
+  std::vector<std::vector<double>> plot_values_;   // [column][row]
+  bool failed_ = false;
+};
+
+/// The first of the files whose ending is none that can be written, or empty.
+std::string unknown_ending(const RunOptions& options);
+
+}  // namespace pmac::tool

@@ -1,0 +1,107 @@
+#include "runtime/tool/report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace pmac::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+void put_source(ordered_json& j, const runtime::Machine& machine, bytecode::SourceLine source) {
+  const bool known = source.file >= 0 && static_cast<std::size_t>(source.file) < machine.files().size();
+  j["file"] = known ? machine.files()[static_cast<std::size_t>(source.file)] : "";
+  j["line"] = source.line;
+}
+
+ordered_json move_json(const runtime::Machine& machine, const runtime::MoveRecord& move) {
+  ordered_json j;
+  put_source(j, machine, move.source);
+  if (move.coord >= 0) j["coord"] = move.coord;
+  else j["motor"] = move.motor;
+  j["mode"] = move.mode;
+  j["start_s"] = move.start_ms / 1000.0;
+  j["end_s"] = move.end_ms / 1000.0;
+  j["length"] = move.length;
+  return j;
+}
+
+ordered_json fault_json(const runtime::Machine& machine, const runtime::FaultRecord& record) {
+  ordered_json j;
+  put_source(j, machine, record.fault.source);
+  if (record.coord >= 0) j["coord"] = record.coord;
+  if (record.plc >= 0) j["plc"] = record.plc;
+  j["time_s"] = record.time_ms / 1000.0;
+  j["error_status"] = runtime::error_status(record.fault.kind);
+  j["text"] = record.fault.detail;
+  return j;
+}
+
+}  // namespace
+
+void Report::add(const runtime::MoveRecord& move) {
+  ++move_count_;
+  if (keep_moves_) moves_.push_back(move);
+}
+
+std::string status_name(const runtime::Machine& machine, const runtime::RunOutcome& outcome) {
+  switch (outcome.end) {
+    case runtime::RunEnd::kTimeLimit: return "time-limit";
+    case runtime::RunEnd::kBudget: return "budget";
+    case runtime::RunEnd::kInterrupted: return "interrupted";
+    case runtime::RunEnd::kIdle:
+    case runtime::RunEnd::kUntil: break;
+  }
+  if (machine.any_fault()) return "fault";
+  return outcome.end == runtime::RunEnd::kUntil ? "until" : "idle";
+}
+
+std::string Report::json(const runtime::Machine& machine, const runtime::RunOutcome& outcome,
+                         const runtime::MotionStatistics& statistics, JsonDetail detail) const {
+  ordered_json j;
+  j["status"] = status_name(machine, outcome);
+  j["time_s"] = outcome.time_ms / 1000.0;
+  if (detail == JsonDetail::kMoves) {
+    std::vector<runtime::MoveRecord> ordered = moves_;
+    std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.start_ms < b.start_ms; });
+    j["moves"] = ordered_json::array();
+    for (const auto& move : ordered) j["moves"].push_back(move_json(machine, move));
+  }
+  j["motors"] = ordered_json::object();
+  for (const auto& row : statistics.rows())
+    j["motors"][std::to_string(row.motor)] = {{"final", row.final_mu}, {"max_speed", row.max_speed_mu_ms}, {"max_accel", row.max_accel_mu_ms2}};
+  if (detail == JsonDetail::kMoves) {
+    j["outputs"] = ordered_json::array();
+    for (const auto& change : outputs_) {
+      ordered_json o{{"time_s", change.time_ms / 1000.0}, {"name", change.name}, {"value", change.value}};
+      put_source(o, machine, change.source);
+      j["outputs"].push_back(o);
+    }
+  }
+  j["faults"] = ordered_json::array();
+  for (const auto& fault : faults_) j["faults"].push_back(fault_json(machine, fault));
+  return j.dump(1) + "\n";
+}
+
+std::string Report::text(const runtime::Machine& machine, const runtime::RunOutcome& outcome,
+                         const runtime::MotionStatistics& statistics, double wall_s) const {
+  std::string out = fmt::format("{} after {:.6f} s simulated: {} moves, {} servo cycles, {} instructions", status_name(machine, outcome),
+                                outcome.time_ms / 1000.0, move_count_, outcome.ticks, outcome.instructions);
+  if (wall_s > 0) out += fmt::format("; {:.0f} times real time", outcome.time_ms / 1000.0 / wall_s);
+  out += "\nmotor        final mu          min mu          max mu   max mu/ms     at s  max mu/ms^2     at s\n";
+  for (const auto& r : statistics.rows())
+    out += fmt::format("{:>5} {:>15.6g} {:>15.6g} {:>15.6g} {:>11.6g} {:>8.4f} {:>12.6g} {:>8.4f}\n", r.motor, r.final_mu, r.min_mu, r.max_mu,
+                       r.max_speed_mu_ms, r.max_speed_at_ms / 1000.0, r.max_accel_mu_ms2, r.max_accel_at_ms / 1000.0);
+  return out;
+}
+
+std::string Report::output_log(const runtime::Machine& machine) const {
+  std::string out;
+  for (const auto& change : outputs_)
+    out += fmt::format("{:>12.6f} s  {} = {:g}  ({})\n", change.time_ms / 1000.0, change.name, change.value, machine.place(change.source));
+  return out;
+}
+
+}  // namespace pmac::tool

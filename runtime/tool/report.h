@@ -1,0 +1,44 @@
+// What a run tells at its end: the JSON object and the statistics for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/machine.h"
+#include "runtime/servo/servo.h"
+#include "runtime/tool/options.h"
+
+namespace pmac::tool {
+
+/// Collects what the machine reports while it runs.
+class Report {
+ public:
+  /// keep_moves: false where nobody will read them, so that memory stays flat.
+  explicit Report(bool keep_moves) : keep_moves_(keep_moves) {}
+
+  void add(const runtime::MoveRecord& move);
+  void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
+  void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+
+  /// Moves in order of their start. The object of --json; see docs/pmac-run.md for its keys.
+  std::string json(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
+                   JsonDetail detail) const;
+  /// The lines of --stats.
+  std::string text(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
+                   double wall_s) const;
+  /// The log of output changes, a line each.
+  std::string output_log(const runtime::Machine& machine) const;
+  const std::vector<runtime::FaultRecord>& faults() const { return faults_; }
+
+ private:
+  bool keep_moves_;
+  std::size_t move_count_ = 0;
+  std::vector<runtime::MoveRecord> moves_;
+  std::vector<runtime::OutputChange> outputs_;
+  std::vector<runtime::FaultRecord> faults_;
+};
+
+/// "idle", "until", "fault", "time-limit" or "budget".
+std::string status_name(const runtime::Machine& machine, const runtime::RunOutcome& outcome);
+
+}  // namespace pmac::tool
