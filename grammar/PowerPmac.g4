@@ -102,7 +102,6 @@ statement
   | {startsAssignment()}? assignment
   | simpleStatement
   | onlineInBuffer
-  | openInBuffer
   ;
 
 block : '{' (statement | ';')* '}' ;
@@ -121,8 +120,7 @@ condition : expression (wrong='=' expression)? ;
 label : LETTER_N NUMBER ':' | LETTER_N NUMBER ;
 
 /// What cannot stand in a buffer, accepted to be refused by name.
-onlineInBuffer : '#' | DEFINE ;
-openInBuffer : OPEN ;
+onlineInBuffer : '#' ({sameLine()}? ~(EOF | ';' | '}' | CLOSE | OPEN))* ;
 
 simpleStatement
   : BREAK
@@ -277,7 +275,7 @@ axisDefinition
   | CODE ({sameLine()}? NUMBER)?
   | axisTerm ({sameLine()}? axisTerm)*
   ;
-axisTerm : sign=('+' | '-')? NUMBER? axis=(AXIS | LETTER_C) | sign=('+' | '-')? NUMBER ;
+axisTerm : sign=('+' | '-')? NUMBER? axis=(AXIS | LETTER_C | NAME) | sign=('+' | '-')? NUMBER ;
 
 // --- tokens: the assignment operators stand together, ASSIGN first and SYNC_DECREMENT last -----------------------------------------
 

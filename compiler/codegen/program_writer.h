@@ -48,13 +48,13 @@ class ProgramWriter {
   // write_expression.cpp
   Register value(const ir::Expr& expr);                        // in a register of its own choice: a local stays where it is
   void value_into(const ir::Expr& expr, Register destination);
-  Register value_or_nan(const ir::Expr* expr);
   void load_number(double number, Register destination);
   void load_variable(const ir::Variable& variable, Register destination);
   void store_variable(const ir::Variable& variable, Register source);
   void store(const ir::Expr& target, Register source);
   Register index_of(const ir::Variable& variable);
-  std::int32_t element_ref(const ir::Element& element);
+  bytecode::ElementRef make_element_ref(const ir::Element& element);
+  std::int32_t element_ref(const ir::Element& element) { return tables_.element(make_element_ref(element)); }
   void binary_into(const ir::Binary& node, Register destination);
   void condition_into(const ir::Expr& expr, Register destination);
   void branch(const ir::Expr& condition, bool sense, Target& target);
@@ -98,6 +98,7 @@ class ProgramWriter {
   void assign(const ir::Expr& target, bytecode::AssignOp op, const ir::Expr& right);
   void assign_synchronously(const ir::Assign& node);
   void assign_list(const ir::Assign& node);
+  void assign_elements(const ir::Assign& node);
   void pass_arguments(const std::vector<ir::ExprPtr>& arguments);
   void take_results(const std::vector<ir::ExprPtr>& arguments, const std::vector<bool>& by_reference);
 

@@ -1,6 +1,5 @@
 // Expressions and conditions.
 #include <cmath>
-#include <limits>
 
 #include "compiler/codegen/program_writer.h"
 
@@ -71,13 +70,6 @@ ProgramWriter::Register ProgramWriter::value(const ir::Expr& expr) {
   return destination;
 }
 
-ProgramWriter::Register ProgramWriter::value_or_nan(const ir::Expr* expr) {
-  if (expr) return value(*expr);
-  const Register destination = take();
-  load_number(std::numeric_limits<double>::quiet_NaN(), destination);
-  return destination;
-}
-
 void ProgramWriter::load_number(double number, Register destination) {
   const bool small = std::abs(number) < 1e9 && number == std::floor(number) && !(number == 0 && std::signbit(number));
   if (small) emit_imm(Opcode::kLoadInt, destination, static_cast<std::int64_t>(number));
@@ -132,7 +124,7 @@ void ProgramWriter::store(const ir::Expr& target, Register source) {
   if (const auto* element = std::get_if<ir::Element>(&target.node)) emit_imm(Opcode::kStoreElement, source, element_ref(*element));
 }
 
-std::int32_t ProgramWriter::element_ref(const ir::Element& element) {
+bytecode::ElementRef ProgramWriter::make_element_ref(const ir::Element& element) {
   bytecode::ElementRef ref;
   ref.id = element.element;
   ref.address = element.address;
@@ -141,7 +133,7 @@ std::int32_t ProgramWriter::element_ref(const ir::Element& element) {
     if (constant) ref.index[i] = {false, static_cast<std::uint32_t>(*constant)};
     else ref.index[i] = {true, value(*element.indices[i])};
   }
-  return tables_.element(ref);
+  return ref;
 }
 
 void ProgramWriter::binary_into(const ir::Binary& node, Register destination) {

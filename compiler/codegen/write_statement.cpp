@@ -1,6 +1,8 @@
 // Statements.
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "compiler/codegen/program_writer.h"
 
 namespace pmac::compiler::codegen {
@@ -72,8 +74,20 @@ void ProgramWriter::assign_synchronously(const ir::Assign& node) {
   emit_imm(Opcode::kSyncStore, right, tables_.sync_target(target));
 }
 
+/// Sys.CdTimer[3]=1,2,3: consecutive elements.
+void ProgramWriter::assign_elements(const ir::Assign& node) {
+  const auto& first = std::get<ir::Element>(node.target->node);
+  bytecode::ElementRef ref = make_element_ref(first);
+  const std::size_t last = first.indices.size() - 1;
+  for (const ir::ExprPtr& expr : node.values) {
+    emit_imm(Opcode::kStoreElement, value(*expr), tables_.element(ref));
+    ++ref.index[last].value;
+  }
+}
+
 /// A(3)=1,2,3: consecutive variables from the first on.
 void ProgramWriter::assign_list(const ir::Assign& node) {
+  if (std::holds_alternative<ir::Element>(node.target->node)) return assign_elements(node);
   const auto& first = std::get<ir::Variable>(node.target->node);
   const Register number = first.index ? index_of(first) : take();
   if (!first.index) load_number(static_cast<double>(first.number), number);
@@ -287,7 +301,7 @@ void ProgramWriter::write(const ir::Control& node, const source::Span&) {
   for (Register i = 0; i < count; ++i) {
     const ir::Expr* argument = i < node.arguments.size() ? node.arguments[i].get() : nullptr;
     if (argument) value_into(*argument, first + i);
-    else emit_abc(Opcode::kMove, first + i, value_or_nan(nullptr));
+    else load_number(std::numeric_limits<double>::quiet_NaN(), first + i);
   }
   emit_abc(Opcode::kControl, static_cast<Register>(node.verb), first, count);
 }

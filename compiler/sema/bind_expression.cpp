@@ -125,7 +125,7 @@ void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
     diagnostics_.error("PM3045", span, fmt::format("{} variables are numbered 0 to {}", range.letter, range.count - 1));
     variable.number = 0;
   }
-  const bool computed_local = variable.variable_class == VariableClass::kL && variable.index;
+  const bool computed_local = variable.variable_class == VariableClass::kL && variable.index && variable.name.empty();
   if (variable.variable_class == VariableClass::kL) highest_local_ = std::max(highest_local_, computed_local ? std::max<std::int64_t>(variable.number, 255) : variable.number);
 }
 

@@ -58,8 +58,15 @@ void Binder::bind(ir::Assign& node, const source::Span& span) {
   for (ir::ExprPtr& value : node.values) bind_value(*value);
   bind_target(*node.target);
   const auto* variable = std::get_if<ir::Variable>(&node.target->node);
-  const bool listable = variable && node.op == bytecode::AssignOp::kSet && !node.synchronous;
-  if (node.values.size() > 1 && !listable) diagnostics_.error("PM3023", span, "a list of values is assigned with = to variables");
+  const auto* element = std::get_if<ir::Element>(&node.target->node);
+  const bool indexed_element = element && !element->indices.empty() && ir::constant_value(*element->indices.back());
+  const bool listable = (variable || indexed_element) && node.op == bytecode::AssignOp::kSet && !node.synchronous;
+  if (node.values.size() > 1 && !listable) diagnostics_.error("PM3023", span, "a list of values is assigned with = to variables, or to elements from a constant index on");
+  if (node.values.size() > 1 && indexed_element && element->element != bytecode::ElementId::kCount) {
+    const double last = *ir::constant_value(*element->indices.back()) + static_cast<double>(node.values.size()) - 1;
+    const int count = bytecode::element_info(element->element).index_counts[element->indices.size() - 1];
+    if (last >= count) diagnostics_.error("PM3050", span, fmt::format("the list goes on to index {}; the last one of {} is {}", last, bytecode::element_info(element->element).name, count - 1));
+  }
   const bool no_sync = node.synchronous && variable && (variable->variable_class == ir::VariableClass::kR || variable->variable_class == ir::VariableClass::kC);
   if (no_sync) diagnostics_.error("PM3024", span, "R and C variables cannot be assigned synchronously; write = instead of ==");
 }

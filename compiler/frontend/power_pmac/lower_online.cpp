@@ -204,7 +204,9 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
     for (P::AxisTermContext* term : right->axisTerm()) {
       const double number = term->NUMBER() ? number_value(*term->NUMBER()->getSymbol()) : 1.0;
       const double value = term->sign && text_of(term->sign) == "-" ? -number : number;
-      if (term->axis) definition.terms.push_back({static_cast<std::uint8_t>(std::max(0, axis_index(term->axis))), value});
+      const int axis = term->axis ? axis_index(term->axis) : 0;
+      if (axis < 0) return;
+      if (term->axis) definition.terms.push_back({static_cast<std::uint8_t>(axis), value});
       else definition.offset_mu += value;
     }
     if (definition.terms.empty()) {

@@ -79,7 +79,6 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
   if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
   if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
-  if (statement->openInBuffer()) diagnostics_.error("PM2005", span, "open inside an open buffer; close is missing before it");
 }
 
 ir::StmtPtr Lowering::lower_body(P::BodyContext* body) {

@@ -29,6 +29,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     if (!absorbs_errors(parser->getContext()->getRuleIndex())) std::rethrow_exception(error);
     const bool no_progress = parser->getContext()->start && parser->getCurrentToken()->getTokenIndex() <= parser->getContext()->start->getTokenIndex();
     skip_statement(*parser, no_progress);
+    endErrorCondition(parser);
   }
 
   antlr4::Token* recoverInline(antlr4::Parser* parser) override {
@@ -56,7 +57,9 @@ class Recovery : public antlr4::DefaultErrorStrategy {
   }
 
   void reportError(antlr4::Parser* parser, const antlr4::RecognitionException& error) override {
-    if (inErrorRecoveryMode(parser)) return;
+    const auto index = static_cast<std::ptrdiff_t>(error.getOffendingToken()->getTokenIndex());
+    if (inErrorRecoveryMode(parser) || index == reported_index_) return;
+    reported_index_ = index;
     beginErrorCondition(parser);
     describe(*parser, error);
   }
@@ -100,7 +103,9 @@ class Recovery : public antlr4::DefaultErrorStrategy {
       --phantom_braces_;
       return;
     }
-    if (inErrorRecoveryMode(&parser)) return;
+    const auto index = static_cast<std::ptrdiff_t>(next->getTokenIndex());
+    if (index == reported_index_) return;
+    reported_index_ = index;
     if (next->getType() == Parser::RIGHT_BRACE) diagnostics_.error("PM2003", tree_.span_of(*next), "this } closes nothing; remove it, or add the missing {");
     else if (next->getType() == Parser::ELSE) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
     else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}", quoted(*next)));
@@ -108,16 +113,21 @@ class Recovery : public antlr4::DefaultErrorStrategy {
 
   void describe(antlr4::Parser& parser, const antlr4::RecognitionException& error) {
     const auto* offending = error.getOffendingToken();
-    if (parser.getContext()->getRuleIndex() == Parser::RuleBuffer && offending->getType() == Token::EOF) return report_open_buffer(parser);
+    if (parser.getContext()->getRuleIndex() == Parser::RuleBuffer && (offending->getType() == Token::EOF || offending->getType() == Parser::OPEN)) return report_open_buffer(parser);
     if (describe_missing_brace(parser, *offending) || describe_unknown_word(parser, *offending)) return;
     const auto expected = error.getExpectedTokens();
-    const bool one_expected = expected.size() == 1;
-    if (one_expected) {
-      const std::string wanted = describe_token(static_cast<std::size_t>(expected.getSingleElement()));
+    const std::string wanted = expected.size() == 1 ? describe_token(static_cast<std::size_t>(expected.getSingleElement())) : std::string();
+    const antlr4::Token* before = parser.getTokenStream()->LT(-1);
+    const bool ends_too_early = before && before->getLine() != offending->getLine();
+    if (ends_too_early) {
+      const source::Span place = tree_.span_of(*before);
+      const std::string text = wanted.empty() ? fmt::format("the statement is not complete behind {}", quoted(*before)) : fmt::format("expected {} at the end of the line", wanted);
+      diagnostics_.error(wanted.empty() ? "PM2014" : "PM2002", place, text);
+    } else if (!wanted.empty()) {
       diagnostics_.error("PM2002", tree_.span_of(*offending), fmt::format("expected {} before {}", wanted, quoted(*offending)));
-      return;
+    } else {
+      diagnostics_.error("PM2001", tree_.span_of(*offending), fmt::format("unexpected {}", quoted(*offending)));
     }
-    diagnostics_.error("PM2001", tree_.span_of(*offending), fmt::format("unexpected {}", quoted(*offending)));
   }
 
   bool describe_missing_brace(antlr4::Parser& parser, const antlr4::Token& offending) {
@@ -165,7 +175,8 @@ class Recovery : public antlr4::DefaultErrorStrategy {
   const SyntaxTree& tree_;
   const DeclaredNames& names_;
   source::Diagnostics& diagnostics_;
-  int phantom_braces_ = 0;  // opening braces that were skipped
+  int phantom_braces_ = 0;              // opening braces that were skipped
+  std::ptrdiff_t reported_index_ = -1;  // token of the last error: one message for each
 };
 
 }  // namespace

@@ -126,6 +126,8 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
   if (axis_definition_) {
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
     if (kind) return {kind, run_length(word)};
+    const bool stands_for_axis = last_[0] != T::AXIS && last_[0] != T::LETTER_C && last_end_ == begin;
+    if (stands_for_axis) return whole_name;
     axis_definition_ = false;
   }
   if (expect_name_ || (!is_rest && (names_.contains(word) || must_be_name(word, begin + word.size())))) return whole_name;
@@ -178,6 +180,24 @@ std::size_t WordLexer::type_of_run(std::string_view run, bool digit_follows, std
   return keyword ? keyword : letter_type(run);
 }
 
+/// XP1: refused by the parser, with the remedy X(P1).
+bool WordLexer::axis_before_variable(std::string_view run) const {
+  if (!in_buffer_ || run.size() < 2) return false;
+  const std::size_t axis = letter_type(run.substr(0, run.size() - 1));
+  const std::size_t variable = letter_type(run.substr(run.size() - 1));
+  return axis == T::AXIS && (variable == T::VAR || variable == T::LETTER_M);
+}
+
+/// Letters and digits of the exponent of a number that ends at an offset: the e5 of X1e5, the e of X1e-3.
+std::size_t WordLexer::exponent_length(std::size_t at) const {
+  const auto c = [&](std::size_t i) { return i < text_.size() ? text_[i] : '\0'; };
+  if (c(at) != 'e' && c(at) != 'E') return 0;
+  if ((c(at + 1) == '+' || c(at + 1) == '-') && is_digit(c(at + 2))) return 1;
+  std::size_t end = at + 1;
+  while (is_digit(c(end))) ++end;
+  return end > at + 1 ? end - at : 0;
+}
+
 /// The first run of a word whose every run of letters is a keyword, a letter or an axis; kind 0 otherwise.
 WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const {
   Word first{0, 0};
@@ -185,10 +205,17 @@ WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const
     const std::size_t length = run_length(word.substr(at));
     const bool digit_follows = at + length < word.size();
     const std::size_t kind = type_of_run(word.substr(at, length), digit_follows, begin + at);
+    if (kind == 0 && digit_follows && axis_before_variable(word.substr(at, length))) {
+      if (at == 0) first = {T::AXIS, length - 1};
+      at += length;
+      while (at < word.size() && is_digit(word[at])) ++at;
+      continue;
+    }
     if (kind == 0) return at == 0 && length == word.size() ? split_commands(word, begin) : Word{0, 0};
     if (at == 0) first = {kind, length};
     at += length;
     while (at < word.size() && is_digit(word[at])) ++at;
+    if (digit_follows) at += exponent_length(begin + at);
   }
   return first;
 }
@@ -227,7 +254,7 @@ void WordLexer::follow_declaration(std::size_t kind, std::size_t line) {
 }
 
 void WordLexer::follow_mode(std::size_t kind, std::size_t line) {
-  if (kind == T::OPEN) in_buffer_ = true;
+  if (kind == T::OPEN) { in_buffer_ = true; names_.local.clear(); }
   if (kind == T::CLOSE) { in_buffer_ = false; names_.local.clear(); }
   if (kind == T::CX) { line_is_buffered_ = true; buffered_line_ = line; }
   const bool motor_arrow = kind == T::ARROW && !in_buffer_ && (last_[0] == T::HASH || (last_[0] == T::NUMBER && last_[1] == T::HASH));

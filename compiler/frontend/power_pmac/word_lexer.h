@@ -37,6 +37,8 @@ class WordLexer : public grammar::PowerPmacLexer {
   std::size_t type_of_run(std::string_view run, bool digit_follows, std::size_t begin) const;
   std::size_t online_type(std::string_view run, bool value_follows) const;
   std::size_t axis_definition_type(std::string_view run) const;
+  std::size_t exponent_length(std::size_t at) const;
+  bool axis_before_variable(std::string_view run) const;
   Word split_commands(std::string_view word, std::size_t begin) const;
   void declare(std::string_view name);
   void follow(std::size_t kind, std::size_t line);

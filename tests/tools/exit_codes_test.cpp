@@ -1,0 +1,157 @@
+// Bad input of every kind: a clear message, the right exit code, never a crash or a hang.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "tests/tools/run_shell.h"
+
+using pmac::test::program;
+using pmac::test::ToolResult;
+using pmac::test::Workspace;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("programs with errors are refused with place and remedy, exit 1", "[tools]") {
+  struct Row { const char* text; const char* place; const char* message; };
+  const Row rows[] = {
+      {"open prog 1\nlinear\nwhile (P1 < 3) {\nX10\nclose\n", "bad.pmc:5:1: error:", "missing }"},
+      {"open prog 1\nlinaer\nX10\nclose\n", "bad.pmc:2:1: error:", "did you mean 'linear'"},
+      {"open prog 1\nX(Speed)\nclose\n", "bad.pmc:2:3: error:", "'Speed' is not declared"},
+      {"open prog 1\nX10 E5\nclose\n", "bad.pmc:2:5: error:", "axis"},
+      {"open prog 1\nX1\nopen prog 2\nX10\nclose\n", "bad.pmc:3:1: error:", "open inside an open buffer"},
+      {"open prog 1\ncircle1 X10 Y0\nclose\n", "bad.pmc:2:9: error:", "without a centre"},
+      {"open prog 1\nF-50\nclose\n", "bad.pmc:2:2: error:", "negative"},
+      {"open prog 1\nif (P1=3) X5\nclose\n", "bad.pmc:2:7: error:", "=="},
+  };
+  const Workspace w;
+  for (const Row& row : rows) {
+    INFO(row.text);
+    w.write("bad.pmc", row.text);
+    for (const char* tool : {"pmacc", "pmac-run"}) {
+      const ToolResult r = w.run(tool, "bad.pmc");
+      CHECK(r.code == 1);
+      INFO(r.err);
+      CHECK(contains(r.err, row.place));
+      CHECK(contains(r.err, row.message));
+      CHECK(contains(r.err, "^"));  // the caret under the source line
+    }
+  }
+}
+
+TEST_CASE("all errors of a file come in one run", "[tools]") {
+  const Workspace w;
+  w.write("bad.pmc", "open prog 1\nX(One)\nX(Two)\nlinaer\nF-1\nclose\n");
+  const ToolResult r = w.run("pmacc", "--check bad.pmc");
+  CHECK(r.code == 1);
+  for (const char* place : {"bad.pmc:2:3", "bad.pmc:3:3", "bad.pmc:4:1", "bad.pmc:5:2"}) CHECK(contains(r.err, place));
+}
+
+TEST_CASE("an error in a macro shows both places", "[tools]") {
+  const Workspace w;
+  w.write("bad.pmc", "#define WRONG X10 )\nopen prog 1\nWRONG\nclose\n");
+  const ToolResult r = w.run("pmacc", "--check bad.pmc");
+  CHECK(r.code == 1);
+  CHECK(contains(r.err, "bad.pmc:3:1: error"));
+  CHECK(contains(r.err, "bad.pmc:1:"));
+  CHECK(contains(r.err, "WRONG"));
+}
+
+TEST_CASE("the traps of the published examples are warnings with a correction", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "#define lookahead 3000\n/*****\nopen prog 1\nX10\nclose\n*****/\n");
+  const ToolResult r = w.run("pmacc", "--check a.pmc");
+  CHECK(r.code == 0);
+  CHECK(contains(r.err, "a.pmc:1:1: warning"));
+  CHECK(contains(r.err, "&1 define lookahead 3000"));
+  CHECK(contains(r.err, "a.pmc:2:1: warning"));
+}
+
+TEST_CASE("a division by zero in a move is a fault at its line, exit 3", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nX5\nX(10/P1)\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e '&1b1r' --json=summary");
+  CHECK(r.code == 3);
+  CHECK(contains(r.err, "a.pmc:4: fault"));
+  CHECK(contains(r.err, "axis X"));
+  CHECK(contains(r.out, "\"status\": \"fault\""));
+}
+
+TEST_CASE("a computed negative feed rate is a fault, exit 3", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nF(P1-5)\nX5\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e '&1b1r'");
+  CHECK(r.code == 3);
+  CHECK(contains(r.err, "a.pmc:3: fault"));
+}
+
+TEST_CASE("an endless empty loop ends at the time limit with its place, exit 4, and everything written", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nX1\nwhile(1){}\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e '&1b1r' --max-time 5 --record r.csv --json");
+  CHECK(r.code == 4);
+  CHECK(contains(r.err, "time limit"));
+  CHECK(contains(r.err, "prog 1 at a.pmc:4"));
+  CHECK(contains(r.out, "\"status\": \"time-limit\""));
+  const std::string csv = w.read("r.csv");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 1 + 11294);  // names, t = 0, ceil(5000 ms / 0.44274211 ms) ticks
+}
+
+TEST_CASE("an endless loop of assignments ends at the time limit, too", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "open prog 1\nwhile(1){P1=P1+1 goto 5 N5:}\nclose\n");
+  CHECK(w.run("pmac-run", "a.pmc -e '&1b1r' --max-time 2").code == 4);
+  w.write("b.pmc", "open prog 1\nN1: dwell 0 goto 1\nclose\n");
+  CHECK(w.run("pmac-run", "b.pmc -e '&1b1r' --max-time 2").code == 4);
+}
+
+TEST_CASE("truncated and bit-flipped object files are refused, exit 2", "[tools]") {
+  const Workspace w;
+  REQUIRE(w.run("pmacc", program("07_oval_lookahead.pmc") + " -o whole.pmx").code == 0);
+  const std::string whole = w.read("whole.pmx");
+  REQUIRE(whole.size() > 500);
+  CHECK(w.run("pmac-run", "whole.pmx -e '&1b5r'").code == 0);
+  for (const std::size_t length : {std::size_t{0}, std::size_t{1}, std::size_t{16}, whole.size() / 2, whole.size() - 1}) {
+    w.write("cut.pmx", whole.substr(0, length));
+    const ToolResult r = w.run("pmac-run", "cut.pmx");
+    CHECK(r.code == 2);
+    CHECK(contains(r.err, "cut.pmx"));
+  }
+  std::mt19937 random(42);
+  for (int i = 0; i < 30; ++i) {
+    std::string flipped = whole;
+    flipped[random() % flipped.size()] ^= static_cast<char>(1u << random() % 8);
+    w.write("flipped.pmx", flipped);
+    const ToolResult r = w.run("pmac-run", "flipped.pmx");
+    CHECK(r.code == 2);
+    CHECK_FALSE(r.err.empty());
+  }
+}
+
+TEST_CASE("usage and files that cannot be read: exit 2", "[tools]") {
+  const Workspace w;
+  CHECK(w.run("pmac-run", "nofile.pmc").code == 2);
+  CHECK(w.run("pmac-run", ".").code == 2);
+  CHECK(w.run("pmac-run", "--no-such-option x.pmc").code == 2);
+  CHECK(w.run("pmac-run", "").code == 2);
+  CHECK(w.run("pmacc", "nofile.pmc").code == 2);
+  w.write("a.pmc", "open prog 1\nclose\n");
+  CHECK(w.run("pmac-run", "a.pmc --at soon 'P1=1'").code == 2);
+  CHECK(w.run("pmac-run", "a.pmc --record table.xyz").code == 2);
+  CHECK(w.run("pmac-run", "a.pmc --record /no/such/folder/r.csv").code == 2);
+  CHECK(w.run("pmac-run", "--help").code == 0);
+  CHECK(contains(w.run("pmac-run", "--help").out, "Examples:"));
+  CHECK(contains(w.run("pmacc", "--help").out, "Examples:"));
+}
+
+TEST_CASE("refused commands are named with the controller's number, exit 3, and the rest goes on", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nX1\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e '&1b77r' -e 'nonsense' -e '&1b1r' --json=summary");
+  CHECK(r.code == 3);
+  CHECK(contains(r.err, "error #22"));
+  CHECK(contains(r.err, "error #20"));
+  CHECK(contains(r.out, "\"final\": 1000.0"));
+}
