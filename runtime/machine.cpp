@@ -50,6 +50,10 @@ void Machine::State::answer(const std::string& text) {
   if (options.observers.answer) options.observers.answer(text);
 }
 
+void Machine::State::warn(bytecode::SourceLine source, const std::string& text) {
+  if (options.observers.warning && warned.insert({source.file, source.line}).second) options.observers.warning(source, text);
+}
+
 void Machine::State::refuse(const std::string& text, const std::string& reason) {
   any_refused = true;
   if (options.observers.refused) options.observers.refused(text, reason);

@@ -84,7 +84,10 @@ Flow CoordSystem::end_block(Thread& thread) {
     rapid_target_uu_ = block_target(modal, block, calculated_uu_);
     return stop_item(thread, AfterRest::kRapid);
   }
-  return start_blendable(thread, block_command(modal, block, calculated_uu_, machine_.elements, number_, thread.source()));
+  motion::MotionCommand command = block_command(modal, block, calculated_uu_, machine_.elements, number_, thread.source());
+  if (command.kind == motion::CommandKind::kCircle && machine_.elements.get(ElementId::kCoordSegMoveTime, static_cast<unsigned>(number_)) <= 0)
+    machine_.warn(command.source, fmt::format("a circle without segmentation is a straight line; set Coord[{}].SegMoveTime", number_));
+  return start_blendable(thread, std::move(command));
 }
 
 Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
