@@ -44,13 +44,16 @@ bool begins_with(const Instruction* code, const Instruction* end, const std::vec
   return std::equal(opcodes.begin(), opcodes.end(), code, [](Opcode op, const Instruction& in) { return op == in.op; });
 }
 
+bool uses_result(Opcode op) {
+  return op == Opcode::kStoreP || op == Opcode::kJumpIfTrue || op == Opcode::kJumpIfFalse || op == Opcode::kLoopIfTrue;
+}
+
 /// True if the loaded values are the operands, and what follows uses the result (see fuse.h).
 bool values_follow(const Instruction* code, const Sequence& sequence) {
   const Instruction& operation = code[sequence.loads];
   if (sequence.loads == 1 && (operation.c() != code[0].a || operation.b() == code[0].a)) return false;
   if (sequence.loads == 2 && (operation.b() != code[0].a || operation.c() != code[1].a || code[0].a == code[1].a)) return false;
-  const bool has_user = sequence.opcodes.size() == sequence.loads + 2;
-  return !has_user || code[sequence.loads + 1].a == operation.a;
+  return !uses_result(sequence.opcodes.back()) || code[sequence.loads + 1].a == operation.a;
 }
 
 /// From the front, so that the opcodes further on are still the plain ones.

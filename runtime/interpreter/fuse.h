@@ -9,7 +9,7 @@
 //
 // The fused body hands values on in machine registers (and stores them in the frame as well), so the operands must follow each
 // other as above: of one load before an arithmetic or test instruction the value is c, of two loads they are b and c; a
-// variable is stored, and a jump decides, by the result.
+// variable is stored, and a jump decides, by the result. A second arithmetic instruction may have any operands.
 #pragma once
 
 #include <cstdint>

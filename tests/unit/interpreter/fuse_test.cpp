@@ -55,7 +55,7 @@ class FusibleCode {
     if (loads >= 1) add(load(second, kLoads[below(3)]));
     const Instruction plain = operation();
     add(bc(plain.op, result, below(8) == 0 ? below(5) : first, below(8) == 0 ? below(5) : second));
-    add(user(below(8) == 0 ? below(5) : result));
+    add(below(3) == 0 ? operation() : user(below(8) == 0 ? below(5) : result));
   }
 
   std::mt19937& random_;
