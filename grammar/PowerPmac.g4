@@ -178,7 +178,7 @@ data
 
 assignment
   : lvalue operation=(ASSIGN | '+=' | '-=' | '*=' | '/=' | '%=' | '&=' | '|=' | '^=' | '>>=' | '<<='
-           | SYNC_ASSIGN | '+==' | '-==' | '*==' | '/==' | '&==' | '|==' | '^==') expression (',' expression)*
+           | SYNC_ASSIGN | '+==' | '-==' | '*==' | '/==' | '&==' | '|==' | '^==') {sameLine()}? expression (',' expression)*
   | lvalue step=('++' | '--' | '++=' | SYNC_DECREMENT)
   ;
 

@@ -1,7 +1,5 @@
 #include "compiler/frontend/power_pmac/syntax_tree.h"
 
-#include <atn/PredictionMode.h>
-
 #include <algorithm>
 
 namespace pmac::compiler::power_pmac {
