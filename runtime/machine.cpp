@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/interpreter/fuse.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -106,6 +107,7 @@ void Machine::State::run_load_script(ProgramHandle program) {
 
 void Machine::State::load(bytecode::Module module) {
   adopt_files(module, files);
+  fuse(module);
   const auto shared = std::make_shared<const bytecode::Module>(std::move(module));
   for (std::uint32_t index : shared->load_order) {
     loading = shared;

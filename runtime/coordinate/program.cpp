@@ -130,6 +130,7 @@ motion::PipelineConfig CoordSystem::config() {
   const auto cs = static_cast<unsigned>(number_);
   motion::PipelineConfig c;
   c.segment_time_ms = e.get(ElementId::kCoordSegMoveTime, cs);
+  c.servo_period_ms = machine_.period_ms();
   c.fine = machine_.options.fine;
   c.ramp_rule = machine_.options.ramp_rule;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
