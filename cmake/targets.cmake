@@ -30,6 +30,7 @@ function(pmac_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_compile_options(${name} PRIVATE ${PMAC_WARNINGS} -O1)  # the test header is large, the tests' own code is not
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE pmac_test_main ${ARG_USES})
   target_compile_definitions(${name} PRIVATE PMAC_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMAC_BINARY_DIR="${CMAKE_BINARY_DIR}")
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 120)
