@@ -1,4 +1,5 @@
 // What a program reaches outside its registers: variables through pointers, elements, motion, commands. Each call knows its runner.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -133,6 +134,7 @@ class MachineHost : public Host {
     s_.options.observers.output({s_.now_ms, name, s_.io.read(pointer.definition), thread.source()});
   }
 
+  Flow enable_gathering(Thread& thread, double value);
   void define_axis(Thread& thread, const bytecode::AxisDefinition& definition);
   void define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition);
   void install(const bytecode::Program& program);
@@ -149,11 +151,14 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     s_.refuse(element_text(a), "error #70: " + text);
     return Flow::kContinue;
   }
+  double rti = static_cast<double>(s_.rti_cycles - 1);
   switch (a.id) {
     case ElementId::kSysServoPeriod:
     case ElementId::kSysRtIntPeriod:
       if (s_.tick > 0 || !(value >= (a.id == ElementId::kSysServoPeriod ? 1e-3 : 0.0)) || value > 1e6)
         return fault(thread, FaultKind::kRunTime, fmt::format("{} cannot be set to {} now", info.name, value));
+      (a.id == ElementId::kSysServoPeriod ? s_.servo_period_ms : rti) = value;
+      s_.rti_cycles = static_cast<std::int64_t>(rti) + 1;
       break;
     case ElementId::kSysCdTimer: s_.elements.assign(a, s_.now_ms + value); return Flow::kContinue;
     case ElementId::kSysP: s_.p[a.index[0]] = value; return Flow::kContinue;
@@ -171,7 +176,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kLdataCmdStatus: thread.command_status = value > -1e9 && value < 1e9 ? static_cast<int>(value) : 0; return Flow::kContinue;
     case ElementId::kMotorHomePos: s_.motors[a.index[0]].home_position_mu = value; return Flow::kContinue;
     case ElementId::kMotorHomeComplete: s_.motors[a.index[0]].home_complete = value != 0; return Flow::kContinue;
-    case ElementId::kGatherEnable: s_.gather.set_enable(value >= 0 && value <= 3 ? static_cast<int>(value) : 0); return Flow::kContinue;
+    case ElementId::kGatherEnable: return enable_gathering(thread, value);
     case ElementId::kCoordErrorStatus:
       s_.elements.assign(a, value);
       if (value == 0) return Flow::kContinue;
@@ -186,6 +191,21 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     default: break;
   }
   s_.elements.assign(a, value);
+  return Flow::kContinue;
+}
+
+Flow MachineHost::enable_gathering(Thread& thread, double value) {
+  const int enable = value >= 0 && value <= 3 ? static_cast<int>(value) : 0;
+  std::vector<ElementAddress> items;
+  const double count = std::min(s_.elements.get(ElementId::kGatherItems), static_cast<double>(element_info(ElementId::kGatherAddr).index_counts[0]));
+  for (unsigned item = 0; enable >= 2 && item < count; ++item) {
+    ElementAddress address;
+    if (!decode_address(s_.elements.get(ElementId::kGatherAddr, item), address))
+      return fault(thread, FaultKind::kRunTime, fmt::format("Gather.Addr[{}] is no address; assign Element.a to it", item));
+    items.push_back(address);
+  }
+  s_.gather.set_items(std::move(items));
+  s_.gather.set_enable(enable);
   return Flow::kContinue;
 }
 

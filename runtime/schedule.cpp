@@ -27,14 +27,14 @@ bool is_foreground(const Machine::State& s, int plc) { return plc <= s.elements.
 }  // namespace
 
 double Machine::State::next_rti_ms(double time_ms) const {
-  const auto every = static_cast<std::int64_t>(elements.get(ElementId::kSysRtIntPeriod)) + 1;
+  const std::int64_t every = rti_cycles;
   auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
   while (tick_ms(n * every) <= time_ms) ++n;
   return tick_ms(n * every);
 }
 
 double Machine::State::rti_at_or_after_ms(double time_ms) const {
-  const auto every = static_cast<std::int64_t>(elements.get(ElementId::kSysRtIntPeriod)) + 1;
+  const std::int64_t every = rti_cycles;
   auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
   while (tick_ms(n * every) < time_ms) ++n;
   return tick_ms(n * every);

@@ -76,8 +76,11 @@ struct Machine::State {
   double idle_since_ms = 0;
   bool is_idle = true;
 
-  double period_ms() const { return elements.get(bytecode::ElementId::kSysServoPeriod); }
-  double rti_period_ms() const { return period_ms() * (elements.get(bytecode::ElementId::kSysRtIntPeriod) + 1); }
+  /// Sys.ServoPeriod and Sys.RtIntPeriod, fixed from the first servo interrupt on.
+  double servo_period_ms = elements.get(bytecode::ElementId::kSysServoPeriod);
+  std::int64_t rti_cycles = 1;
+  double period_ms() const { return servo_period_ms; }
+  double rti_period_ms() const { return servo_period_ms * static_cast<double>(rti_cycles); }
   double tick_ms(std::int64_t k) const { return static_cast<double>(k) * period_ms(); }
   /// First real-time interrupt after time_ms (strictly).
   double next_rti_ms(double time_ms) const;

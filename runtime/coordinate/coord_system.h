@@ -93,7 +93,9 @@ class CoordSystem {
 
   // program.cpp
   void calculate(double time_ms);
+  int commands_wanted() const;
   bool enough_ahead(double time_ms) const;
+  double next_calculation_ms(double time_ms) const;
   std::optional<Fault> come_to_rest(double time_ms, AfterRest then);
   void at_rest(double time_ms);
   void settle_path(double time_ms);
@@ -134,7 +136,7 @@ class CoordSystem {
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
   motion::StageObservers observers_;
-  bool on_path_ = false;
+  bool on_path_ = false, lookahead_ = false;
   double sampled_to_ms_ = 0;
   AxisVector calculated_uu_{};
   OpenBlock block_;

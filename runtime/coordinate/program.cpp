@@ -110,7 +110,7 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   pending_moves_.push_back({command.id, delay ? "delay" : move_mode_name(modal.mode), command.source});
   collect_timings();
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
-  resume_ms_ = machine_.next_rti_ms(machine_.now_ms);
+  resume_ms_ = next_calculation_ms(machine_.now_ms);
   return Flow::kSuspend;
 }
 
@@ -119,6 +119,7 @@ void CoordSystem::ensure_sequence(double time_ms) {
   if (on_path_) return;
   motion::PipelineConfig set_up = config();
   path_map_ = set_up.map;
+  lookahead_ = set_up.lookahead;
   pipeline_.reset(set_up, calculated_uu_, time_ms);
   on_path_ = true;
   sampled_to_ms_ = time_ms;
@@ -151,13 +152,22 @@ motion::PipelineConfig CoordSystem::config() {
   return c;
 }
 
+/// How many commands have to be known beyond the executing one; User's Manual p681 and the Turbo manuals.
+int CoordSystem::commands_wanted() const {
+  return machine_.elements.get(ElementId::kCoordSegMoveTime, static_cast<unsigned>(number_)) > 0 ? 1 : 2;
+}
+
 bool CoordSystem::enough_ahead(double time_ms) const {
-  const ElementStore& e = machine_.elements;
-  const auto cs = static_cast<unsigned>(number_);
   if (pipeline_.horizon_ms() < machine_.next_rti_ms(time_ms)) return false;
-  if (e.get(ElementId::kCoordSegMoveTime, cs) <= 0) return pipeline_.commands_ahead(time_ms) >= 2;
-  if (e.get(ElementId::kCoordLHDistance, cs) > 1 && lookahead_buffer > 0) return !pipeline_.wants_more_segments(time_ms);
-  return pipeline_.commands_ahead(time_ms) >= 1;
+  return lookahead_ ? !pipeline_.wants_more_segments(time_ms) : pipeline_.commands_ahead(time_ms) >= commands_wanted();
+}
+
+/// The first real-time interrupt at which enough_ahead() may have become false, and before the horizon.
+double CoordSystem::next_calculation_ms(double time_ms) const {
+  const double in_time_ms = pipeline_.horizon_ms() - 2 * machine_.rti_period_ms();
+  const double until_ms = std::min(pipeline_.enough_until_ms(commands_wanted()), in_time_ms);
+  const double next_ms = machine_.next_rti_ms(time_ms);
+  return until_ms <= next_ms ? next_ms : machine_.rti_at_or_after_ms(until_ms);
 }
 
 // --- time ---------------------------------------------------------------------------------------------------------------
@@ -196,7 +206,7 @@ void CoordSystem::calculate(double time_ms) {
   if (on_path_) {
     collect_timings();
     if (enough_ahead(time_ms)) {
-      resume_ms_ = machine_.next_rti_ms(time_ms);
+      resume_ms_ = next_calculation_ms(time_ms);
       return;
     }
   }

@@ -37,6 +37,7 @@ class Lookahead {
   double planned_ms() const { return known_ms_; }
   /// So much of it before anything is committed.
   double needed_ms() const { return window_ms_ + chunk_ms_; }
+  double window_ms() const { return window_ms_; }
 
  private:
   struct Interval {

@@ -199,6 +199,12 @@ bool Pipeline::wants_more_segments(double time_ms) const {
   return s.lookahead && !s.fault && s.timeline.programmed_after(time_ms) + s.lookahead->planned_ms() < s.lookahead->needed_ms();
 }
 
+double Pipeline::enough_until_ms(int commands) const {
+  const State& s = *state_;
+  if (!s.lookahead) return s.timings.ahead_until_ms(commands);
+  return s.timeline.programmed_until_ms(s.lookahead->window_ms() - s.lookahead->planned_ms());
+}
+
 bool Pipeline::at_rest(double time_ms) const { return !state_->in_sequence && time_ms >= state_->timeline.end_ms(); }
 
 double Pipeline::horizon_ms() const {

@@ -60,6 +60,10 @@ class Pipeline {
   /// Asked for the next tick, adding while it says so keeps horizon_ms() ahead of that tick.
   bool wants_more_segments(double time_ms) const;
 
+  /// The program need not be calculated on before this time, at which fewer than `commands` commands are known beyond the
+  /// executing one, or less than the lookahead window, as far as can be told now. Any time for lack of both: -inf.
+  double enough_until_ms(int commands) const;
+
   /// Everything added is complete and its motion ends at or before time_ms.
   bool at_rest(double time_ms) const;
   /// Positions are final up to here (a sequence that has not been ended may go on beyond). Grows with add() and end_sequence().

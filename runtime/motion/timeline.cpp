@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pmac::motion {
 namespace {
@@ -49,6 +50,12 @@ void Timeline::prune() {
 double Timeline::programmed_after(double time_ms) const {
   const auto first = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return s.start_ms < time_ms; });
   return first == segments_.end() ? 0 : programmed_end_ms_ - programmed_ms_[static_cast<std::size_t>(first - segments_.begin())];
+}
+
+double Timeline::programmed_until_ms(double amount_ms) const {
+  const auto beyond = std::upper_bound(programmed_ms_.begin(), programmed_ms_.end(), programmed_end_ms_ - amount_ms);
+  if (beyond == programmed_ms_.begin()) return -std::numeric_limits<double>::infinity();
+  return segments_[static_cast<std::size_t>(beyond - programmed_ms_.begin()) - 1].start_ms;
 }
 
 SourceLine Timeline::source_at(double time_ms) const {

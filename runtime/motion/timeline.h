@@ -26,6 +26,8 @@ class Timeline {
   const std::vector<double>& rest_mu() const { return rest_mu_; }
   /// Programmed time of the segments that begin at or after time_ms.
   double programmed_after(double time_ms) const;
+  /// Until when programmed_after() stays at amount_ms or more; -inf if it does not.
+  double programmed_until_ms(double amount_ms) const;
   SourceLine source_at(double time_ms) const;
 
   /// See Pipeline::sample().

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pmac::motion {
 namespace {
@@ -95,6 +96,13 @@ void Timings::end_sequence() {
 int Timings::ahead(double time_ms) const {
   const auto first = std::upper_bound(starts_ms_.begin(), starts_ms_.end(), time_ms);
   return unknown_starts_ + static_cast<int>(starts_ms_.end() - first);
+}
+
+double Timings::ahead_until_ms(int moves) const {
+  const int missing = moves - unknown_starts_;
+  if (missing <= 0) return std::numeric_limits<double>::infinity();
+  if (missing > static_cast<int>(starts_ms_.size())) return -std::numeric_limits<double>::infinity();
+  return starts_ms_[starts_ms_.size() - static_cast<std::size_t>(missing)];
 }
 
 void Timings::prune(double time_ms) {

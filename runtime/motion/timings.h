@@ -25,6 +25,8 @@ class Timings {
 
   /// Moves that begin after time_ms, or at a time that is not known yet.
   int ahead(double time_ms) const;
+  /// Until when ahead() stays at `moves` or more, as far as is known now; -inf if it does not.
+  double ahead_until_ms(int moves) const;
   /// Forgets what ahead() does not need for times from here on.
   void prune(double time_ms);
   void take(std::vector<MoveTiming>& out);
