@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/interpreter/fuse.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -48,6 +49,10 @@ std::string Machine::State::place(bytecode::SourceLine source) const {
 
 void Machine::State::answer(const std::string& text) {
   if (options.observers.answer) options.observers.answer(text);
+}
+
+void Machine::State::warn(bytecode::SourceLine source, const std::string& text) {
+  if (options.observers.warning && warned.insert({source.file, source.line}).second) options.observers.warning(source, text);
 }
 
 void Machine::State::refuse(const std::string& text, const std::string& reason) {
@@ -102,6 +107,7 @@ void Machine::State::run_load_script(ProgramHandle program) {
 
 void Machine::State::load(bytecode::Module module) {
   adopt_files(module, files);
+  fuse(module);
   const auto shared = std::make_shared<const bytecode::Module>(std::move(module));
   for (std::uint32_t index : shared->load_order) {
     loading = shared;

@@ -61,6 +61,7 @@ struct FaultRecord {
 struct MachineObservers {
   std::function<void(const std::string&)> answer;            // reports of on-line commands, [send N] lines
   std::function<void(const std::string& text, const std::string& reason)> refused;  // on-line commands refused
+  std::function<void(bytecode::SourceLine, const std::string& text)> warning;   // once a source line and text
   std::function<void(const MoveRecord&)> move;
   std::function<void(const OutputChange&)> output;
   std::function<void(const FaultRecord&)> fault;

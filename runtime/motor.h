@@ -37,6 +37,8 @@ struct Motor {
     if (source == Source::kProfile) return profile.velocity_mu_ms(time_ms);
     return source == Source::kPath ? velocity_mu_ms : 0.0;
   }
+  /// Of a motor on a profile; a path motor's is not continued.
+  double accel_at(double time_ms) const { return source == Source::kProfile ? profile.accel_mu_ms2(time_ms) : 0.0; }
   void follow(const motion::MotorProfile& p) {
     profile = p;
     source = Source::kProfile;

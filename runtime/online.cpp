@@ -130,12 +130,12 @@ void jog_to(const Call& call, Motor& m, double target_mu) {
     return;
   }
   const double now = call.s.now_ms;
-  jog(call, m, motion::MotorProfile::move(now, m.position_at(now), m.velocity_at(now), target_mu, jog_parameters(call.s, m.number)));
+  jog(call, m, motion::MotorProfile::move(now, m.position_at(now), m.velocity_at(now), target_mu, jog_parameters(call.s, m.number), m.accel_at(now)));
 }
 
 void jog_endless(const Call& call, Motor& m, int direction) {
   const double now = call.s.now_ms;
-  jog(call, m, motion::MotorProfile::jog(now, m.position_at(now), m.velocity_at(now), direction, jog_parameters(call.s, m.number)));
+  jog(call, m, motion::MotorProfile::jog(now, m.position_at(now), m.velocity_at(now), direction, jog_parameters(call.s, m.number), m.accel_at(now)));
 }
 
 bool may_jog(const Call& call, const Motor& m) {
@@ -180,7 +180,7 @@ Flow motor_verb(const Call& call) {
     case ControlVerb::kJogPlus: jog_endless(call, m, 1); break;
     case ControlVerb::kJogMinus: jog_endless(call, m, -1); break;
     case ControlVerb::kJogStop:
-      if (m.moving()) m.follow(motion::MotorProfile::stop(now, m.position_at(now), m.velocity_at(now), jog_parameters(call.s, number)));
+      if (m.moving()) m.follow(motion::MotorProfile::stop(now, m.position_at(now), m.velocity_at(now), jog_parameters(call.s, number), m.accel_at(now)));
       break;
     case ControlVerb::kJogTo: jog_to(call, m, value); break;
     case ControlVerb::kJogToAndKeep: m.prejog_mu = value; jog_to(call, m, value); break;

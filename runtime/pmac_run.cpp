@@ -42,6 +42,9 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.refused = [](const std::string& text, const std::string& reason) {
     std::fprintf(stderr, "refused: %s: %s\n", text.c_str(), reason.c_str());
   };
+  o.warning = [&machine](bytecode::SourceLine source, const std::string& text) {
+    std::fprintf(stderr, "%s: warning: %s\n", machine->place(source).c_str(), text.c_str());
+  };
   o.move = [&report](const runtime::MoveRecord& move) { report.add(move); };
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,7 @@ struct Machine::State {
   std::uint64_t instructions = 0;
   std::uint64_t random_state = 0x9e3779b97f4a7c15ull;
   bool any_fault = false, any_refused = false;
+  std::set<std::pair<std::int32_t, std::int32_t>> warned;   // file and line
   double idle_since_ms = 0;
   bool is_idle = true;
 
@@ -85,6 +87,7 @@ struct Machine::State {
 
   void report_fault(const FaultRecord& record);
   void answer(const std::string& text);
+  void warn(bytecode::SourceLine source, const std::string& text);
   void refuse(const std::string& text, const std::string& reason);
   std::string place(bytecode::SourceLine source) const;
   /// Runs a program to its end or budget on the command thread.

@@ -84,7 +84,10 @@ Flow CoordSystem::end_block(Thread& thread) {
     rapid_target_uu_ = block_target(modal, block, calculated_uu_);
     return stop_item(thread, AfterRest::kRapid);
   }
-  return start_blendable(thread, block_command(modal, block, calculated_uu_, machine_.elements, number_, thread.source()));
+  motion::MotionCommand command = block_command(modal, block, calculated_uu_, machine_.elements, number_, thread.source());
+  if (command.kind == motion::CommandKind::kCircle && machine_.elements.get(ElementId::kCoordSegMoveTime, static_cast<unsigned>(number_)) <= 0)
+    machine_.warn(command.source, fmt::format("a circle without segmentation is a straight line; set Coord[{}].SegMoveTime", number_));
+  return start_blendable(thread, std::move(command));
 }
 
 Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
@@ -127,6 +130,7 @@ motion::PipelineConfig CoordSystem::config() {
   const auto cs = static_cast<unsigned>(number_);
   motion::PipelineConfig c;
   c.segment_time_ms = e.get(ElementId::kCoordSegMoveTime, cs);
+  c.servo_period_ms = machine_.period_ms();
   c.fine = machine_.options.fine;
   c.ramp_rule = machine_.options.ramp_rule;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));

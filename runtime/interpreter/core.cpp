@@ -10,7 +10,7 @@
 #include "compiler/bytecode/operators.h"
 #include "runtime/interpreter/fuse.h"
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(PMAC_SWITCH_DISPATCH)
 #define PMAC_COMPUTED_GOTO 1
 #pragma GCC diagnostic ignored "-Wpedantic"
 #else
@@ -160,9 +160,9 @@ void InterpreterCore::dispatch() {
 #define OPCODE(Name, text, format, meaning) &&body_##Name,
 #include "compiler/bytecode/opcode.def"
 #undef OPCODE
-#define FUSED2(A, B) &&body_##A##B,
-#define FUSED3(A, B, C) &&body_##A##B##C,
-#define FUSED4(A, B, C, D) &&body_##A##B##C##D,
+#define FUSED2(loads, A, B) &&body_##A##B,
+#define FUSED3(loads, A, B, C) &&body_##A##B##C,
+#define FUSED4(loads, A, B, C, D) &&body_##A##B##C##D,
 #include "runtime/interpreter/fused.def"
 #undef FUSED2
 #undef FUSED3
@@ -178,8 +178,8 @@ void InterpreterCore::dispatch() {
   } while (false)
   DISPATCH();
 #else
-#define OP(Name) case Opcode::k##Name
-#define FUSED_OP(Name) case static_cast<Opcode>(FusedOpcode::k##Name)
+#define OP(Name) case static_cast<unsigned>(Opcode::k##Name)
+#define FUSED_OP(Name) case static_cast<unsigned>(FusedOpcode::k##Name)
 #define DISPATCH() goto dispatch_next
 #define NEXT()  \
   do {          \
@@ -187,8 +187,7 @@ void InterpreterCore::dispatch() {
     DISPATCH(); \
   } while (false)
 dispatch_next:
-  switch (pc->op) {
-  case Opcode::kCount:
+  switch (static_cast<unsigned>(pc->op)) {
 #endif
 
   OP(Nop) : NEXT();

@@ -11,6 +11,7 @@ using bytecode::Instruction;
 using bytecode::Opcode;
 
 struct Sequence {
+  std::size_t loads;
   std::vector<Opcode> opcodes;
   FusedOpcode fused;
 };
@@ -20,9 +21,9 @@ using Sequences = std::array<std::vector<Sequence>, static_cast<std::size_t>(Opc
 
 Sequences make_sequences() {
   const Sequence rows[] = {
-#define FUSED2(A, B) {{Opcode::k##A, Opcode::k##B}, FusedOpcode::k##A##B},
-#define FUSED3(A, B, C) {{Opcode::k##A, Opcode::k##B, Opcode::k##C}, FusedOpcode::k##A##B##C},
-#define FUSED4(A, B, C, D) {{Opcode::k##A, Opcode::k##B, Opcode::k##C, Opcode::k##D}, FusedOpcode::k##A##B##C##D},
+#define FUSED2(loads, A, B) {loads, {Opcode::k##A, Opcode::k##B}, FusedOpcode::k##A##B},
+#define FUSED3(loads, A, B, C) {loads, {Opcode::k##A, Opcode::k##B, Opcode::k##C}, FusedOpcode::k##A##B##C},
+#define FUSED4(loads, A, B, C, D) {loads, {Opcode::k##A, Opcode::k##B, Opcode::k##C, Opcode::k##D}, FusedOpcode::k##A##B##C##D},
 #include "runtime/interpreter/fused.def"
 #undef FUSED2
 #undef FUSED3
@@ -43,11 +44,24 @@ bool begins_with(const Instruction* code, const Instruction* end, const std::vec
   return std::equal(opcodes.begin(), opcodes.end(), code, [](Opcode op, const Instruction& in) { return op == in.op; });
 }
 
+bool uses_result(Opcode op) {
+  return op == Opcode::kStoreP || op == Opcode::kJumpIfTrue || op == Opcode::kJumpIfFalse || op == Opcode::kLoopIfTrue;
+}
+
+/// True if the loaded values are the operands, and what follows uses the result (see fuse.h).
+bool values_follow(const Instruction* code, const Sequence& sequence) {
+  const Instruction& operation = code[sequence.loads];
+  if (sequence.loads == 1 && (operation.c() != code[0].a || operation.b() == code[0].a)) return false;
+  if (sequence.loads == 2 && (operation.b() != code[0].a || operation.c() != code[1].a || code[0].a == code[1].a)) return false;
+  return !uses_result(sequence.opcodes.back()) || code[sequence.loads + 1].a == operation.a;
+}
+
 /// From the front, so that the opcodes further on are still the plain ones.
 void fuse_code(std::vector<Instruction>& code, const Sequences& sequences) {
   for (std::size_t pc = 0; pc < code.size(); ++pc) {
     for (const Sequence& sequence : sequences[static_cast<std::size_t>(code[pc].op)]) {
-      if (!begins_with(&code[pc], code.data() + code.size(), sequence.opcodes)) continue;
+      const bool fits = begins_with(&code[pc], code.data() + code.size(), sequence.opcodes) && values_follow(&code[pc], sequence);
+      if (!fits) continue;
       code[pc].op = static_cast<Opcode>(sequence.fused);
       break;
     }

@@ -55,7 +55,9 @@ void evaluate(const Curve& curve, double exact_u, CurvePoint& point) {
 }
 
 AxisVector derivative(const Curve& curve, double u) {
+  if (!curve.is_arc) return curve.delta;
   CurvePoint point;
+  point.d1.fill(0);
   evaluate(curve, u, point);
   return point.d1;
 }

@@ -29,11 +29,11 @@ struct Curve {
 /// A straight line; `moved` are the axes that differ.
 Curve line(const AxisVector& start, const AxisVector& end);
 
-/// Position and derivatives with respect to u. Only moved axes are written to the derivatives, which start as zero.
-struct CurvePoint { AxisVector position; AxisVector d1{}, d2{}; };
+/// Position and derivatives with respect to u. Derivatives are written for moved axes only; the others keep what they were.
+struct CurvePoint { AxisVector position, d1, d2; };
 void evaluate(const Curve& curve, double u, CurvePoint& point);
 
-/// First derivative with respect to u at u.
+/// First derivative with respect to u at u, of every axis.
 AxisVector derivative(const Curve& curve, double u);
 
 }  // namespace pmac::motion

@@ -8,6 +8,8 @@ namespace {
 
 /// Shorter parts of a segment are not worth a node.
 constexpr double kMinPart_ms = 0.01;
+/// x that could be reached at the end of a segment to x that may: where they are nearer there is nothing to gain within it.
+constexpr double kWorthwhileRise = 1.02;
 
 /// Part of a segment from `from` on, `duration` long.
 Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
@@ -19,97 +21,107 @@ Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
   return part;
 }
 
-/// The segment run through with x from x0 to x1, in units of 1/scale^2; one of them is not zero.
-TimedSegment timed(Segment segment, double scale, double x0, double x1) {
-  const double rate0 = std::sqrt(x0) / scale, rate1 = std::sqrt(x1) / scale;
+/// The segment run through with x from x0 to x1; one of them is not zero.
+TimedSegment timed(Segment segment, double x0, double x1) {
+  const double rate0 = std::sqrt(x0), rate1 = std::sqrt(x1);
   TimedSegment result;
   result.duration_ms = 2 * segment.duration_ms / (rate0 + rate1);
   result.rate = rate0;
-  result.rate_slope = (x1 - x0) / (2 * scale * scale * segment.duration_ms);
+  result.rate_slope = (x1 - x0) / (2 * segment.duration_ms);
   result.segment = std::move(segment);
   return result;
 }
 
 }  // namespace
 
-Lookahead::Lookahead(std::vector<MotorLimits> limits, int window)
-    : limits_(std::move(limits)), window_(std::max(1, window)), chunk_(1 + window_ / 4) {}
+Lookahead::Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms)
+    : limits_(limits), window_ms_(window_ms), chunk_ms_(window_ms / 4), steps_(std::move(limits), servo_period_ms) {}
 
 void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
-  const double scale = scale_of(segment);
-  RateLimits limits = rate_limits(segment, limits_, scale > 0 ? scale : 1);
-  const double bound = start_bound(limits, scale);
-  if (bound == 0 && !intervals_.empty() && intervals_.back().start_bound == 0) split_last();
-  intervals_.push_back({std::move(segment), scale > 0 ? scale : 1, std::move(limits), bound, 0});
-  if (waiting() < needed()) return;
-  backward(0);
-  commit(chunk_, 0, out);
+  steps_.add(std::move(segment), prepared_);
+  for (PreparedSegment& prepared : prepared_) {
+    append(std::move(prepared));
+    if (known_ms_ < window_ms_ + chunk_ms_) continue;
+    backward(0);
+    while (known() > 1 && known_ms_ - intervals_.front().segment.duration_ms >= window_ms_) commit_first(0, out);
+  }
+  prepared_.clear();
 }
 
 void Lookahead::finish(std::vector<TimedSegment>& out) {
+  steps_.finish(prepared_);
+  for (PreparedSegment& prepared : prepared_) append(std::move(prepared));
+  prepared_.clear();
   if (!intervals_.empty()) {
-    const bool steps = is_moving(intervals_.back().segment, true);
-    if (steps && intervals_.back().start_bound == 0) split_last();
-    const double end_beta = steps ? 0 : intervals_.back().limits.max_rate2;
+    const bool stops = is_moving(intervals_.back().segment, true);
+    if (stops && intervals_.back().start_bound == 0) split_last();
+    const double end_beta = stops ? 0 : intervals_.back().limits.max_rate2;
     backward(end_beta);
-    commit(waiting(), end_beta, out);
+    while (known() > 0) commit_first(end_beta, out);
   }
+  known_ms_ = 0;
   planned_ = 0;
   at_start_ = true;
 }
 
-/// Scale of a segment that is about to be appended; 0 where motion has to stop at its start.
-double Lookahead::scale_of(const Segment& segment) const {
-  if (intervals_.empty()) return is_moving(segment, false) ? 0 : 1;
-  return intervals_.back().scale * speed_ratio(intervals_.back().segment, segment);
+void Lookahead::append(PreparedSegment prepared) {
+  Interval next{std::move(prepared.segment), prepared.accel_share, {}, prepared.speed_ratio * prepared.speed_ratio};
+  next.limits = rate_limits(next.segment, limits_, next.accel_share);
+  next.start_bound = std::min(next.limits.max_rate2, prepared.max_start_rate * prepared.max_start_rate);
+  if (!intervals_.empty()) next.start_bound = std::min(next.start_bound, intervals_.back().limits.max_rate2 / next.speed_ratio2);
+  if (prepared.stops_at_start) next.start_bound = 0;
+  if (next.start_bound == 0 && !intervals_.empty() && intervals_.back().start_bound == 0) split_last();
+  push(std::move(next));
 }
 
-/// Largest x at its start, by itself and its predecessor.
-double Lookahead::start_bound(const RateLimits& limits, double scale) const {
-  if (scale == 0) return 0;
-  return intervals_.empty() ? limits.max_rate2 : std::min(intervals_.back().limits.max_rate2, limits.max_rate2);
+void Lookahead::push(Interval interval) {
+  known_ms_ += interval.segment.duration_ms;
+  intervals_.push_back(std::move(interval));
 }
 
 /// Motion has to stop at both ends of the last segment: in two halves it can move in between.
 void Lookahead::split_last() {
-  Interval whole = std::move(intervals_.back());
+  const Interval whole = std::move(intervals_.back());
   intervals_.pop_back();
-  planned_ = std::min(planned_, waiting());
+  known_ms_ -= whole.segment.duration_ms;
+  planned_ = std::min(planned_, known());
   const double half_ms = whole.segment.duration_ms / 2;
   for (const double from_ms : {0.0, half_ms}) {
-    Segment part = part_of(whole.segment, from_ms, half_ms);
-    RateLimits limits = rate_limits(part, limits_, whole.scale);
-    const double bound = from_ms == 0 ? 0 : limits.max_rate2;
-    intervals_.push_back({std::move(part), whole.scale, std::move(limits), bound, 0});
+    Interval half{part_of(whole.segment, from_ms, half_ms), whole.accel_share, {}, from_ms == 0 ? whole.speed_ratio2 : 1};
+    half.limits = rate_limits(half.segment, limits_, half.accel_share);
+    half.start_bound = from_ms == 0 ? 0 : half.limits.max_rate2;
+    push(std::move(half));
   }
 }
 
 /// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are.
 void Lookahead::backward(double end_beta) {
-  double beta = end_beta;
-  for (int i = waiting() - 1; i >= 0; --i) {
+  double beta = end_beta;  // of x at the end of interval i
+  for (int i = known() - 1; i >= 0; --i) {
     Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    beta = interval.limits.largest_start(interval.start_bound, beta);
-    if (i < planned_ && beta == interval.beta) break;
-    interval.beta = beta;
+    const double start = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_rate2));
+    if (i < planned_ && start == interval.beta) break;
+    interval.beta = start;
+    beta = start * interval.speed_ratio2;
   }
-  planned_ = waiting();
+  planned_ = known();
 }
 
-void Lookahead::commit(int count, double end_beta, std::vector<TimedSegment>& out) {
+void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   if (at_start_) rate2_ = intervals_.front().beta;
   at_start_ = false;
-  for (int i = 0; i < count; ++i) {
-    Interval interval = std::move(intervals_.front());
-    intervals_.pop_front();
-    --planned_;
-    const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta;
-    const double next = interval.limits.largest_end(rate2_, next_beta);
-    const bool meets_beta = next == next_beta && rate2_ < interval.beta;
-    const bool done = meets_beta && emit_with_switch(interval, rate2_, next, out);
-    if (!done) out.push_back(timed(std::move(interval.segment), interval.scale, rate2_, next));
-    rate2_ = next;
-  }
+  Interval interval = std::move(intervals_.front());
+  intervals_.pop_front();
+  --planned_;
+  known_ms_ -= interval.segment.duration_ms;
+  const double ratio2 = intervals_.empty() ? 1 : intervals_.front().speed_ratio2;
+  const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta * ratio2;
+  const double next = interval.limits.largest_end(rate2_, std::min(next_beta, interval.limits.max_rate2));
+  const bool meets_beta = next == next_beta && rate2_ < interval.beta;
+  const bool worthwhile = meets_beta && interval.limits.largest_end(rate2_, interval.limits.max_rate2) > kWorthwhileRise * next;
+  const bool done = worthwhile && emit_with_switch(interval, rate2_, next, out);
+  if (!done) out.push_back(timed(std::move(interval.segment), rate2_, next));
+  rate2_ = next / ratio2;
 }
 
 /// Within this segment motion changes from speeding up to slowing down. One more node where the two meet makes both complete:
@@ -121,7 +133,7 @@ void Lookahead::commit(int count, double end_beta, std::vector<TimedSegment>& ou
 bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const {
   constexpr int kSteps = 30;
   const double whole_ms = interval.segment.duration_ms;
-  const auto limits_of = [&](const Segment& part) { return rate_limits(part, limits_, interval.scale); };
+  const auto limits_of = [&](const Segment& part) { return rate_limits(part, limits_, interval.accel_share); };
   const auto rise = [&](double at_ms) {
     return limits_of(part_of(interval.segment, 0, at_ms)).largest_end(x0, interval.limits.max_rate2);
   };
@@ -138,8 +150,8 @@ bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1,
   Segment first = part_of(interval.segment, 0, low), second = part_of(interval.segment, low, whole_ms - low);
   const bool faster = peak > x0 + (x1 - x0) * low / whole_ms;
   if (!faster || !limits_of(first).allows(x0, peak) || !limits_of(second).allows(peak, x1)) return false;
-  out.push_back(timed(std::move(first), interval.scale, x0, peak));
-  out.push_back(timed(std::move(second), interval.scale, peak, x1));
+  out.push_back(timed(std::move(first), x0, peak));
+  out.push_back(timed(std::move(second), peak, x1));
   return true;
 }
 

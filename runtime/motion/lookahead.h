@@ -10,8 +10,7 @@
 //      +---------------------- s
 //       committed | window
 //
-// Motion stops (x = 0) where the direction changes at once: at corners that are not blended, and at the ends of a sequence
-// without ramps. A step in speed alone is taken up by x. Where the program itself rests, x is free. Method: Pham and Pham, "A new approach to time-optimal path parameterization based on
+// Where the path's velocity steps, velocity_steps.h has said what to do. Where the program itself rests, x is free. Method: Pham and Pham, "A new approach to time-optimal path parameterization based on
 // reachability analysis" (2018).
 #pragma once
 
@@ -19,42 +18,49 @@
 #include <vector>
 
 #include "runtime/motion/rate_limits.h"
+#include "runtime/motion/velocity_steps.h"
 
 namespace pmac::motion {
 
 class Lookahead {
  public:
-  /// limits: [motor]. window: segments that are always known beyond what is committed, >= 1.
-  Lookahead(std::vector<MotorLimits> limits, int window);
+  /// limits: [motor]. window_ms: programmed time that is always known beyond what is committed (LHDistance * SegMoveTime; in
+  /// time, because nodes at corners and in arcs make some segments shorter).
+  Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms);
 
   /// The next segment; appends those that are now committed. Amortised constant cost.
   void add(Segment segment, std::vector<TimedSegment>& out);
   /// The path ends here: commits everything. The next segment begins a new path.
   void finish(std::vector<TimedSegment>& out);
 
-  /// Segments that are not yet committed.
-  int waiting() const { return static_cast<int>(intervals_.size()); }
-  /// As many as it takes before anything is committed.
-  int needed() const { return window_ + chunk_; }
+  /// Programmed time that is planned but not yet committed.
+  double planned_ms() const { return known_ms_; }
+  /// So much of it before anything is committed.
+  double needed_ms() const { return window_ms_ + chunk_ms_; }
 
  private:
   struct Interval {
     Segment segment;
-    double scale;               // x counts in units of 1/scale^2
+    double accel_share;
     RateLimits limits;
+    double speed_ratio2 = 1;    // x at the end of the interval before is this times x at its start
     double start_bound = 1;     // of x at its start: limits of both neighbours, 0 where motion has to stop
     double beta = 0;            // of x at its start
   };
-  double scale_of(const Segment& segment) const;
+  int known() const { return static_cast<int>(intervals_.size()); }
+  void append(PreparedSegment prepared);
+  void push(Interval interval);
   void split_last();
   void backward(double end_beta);
-  void commit(int count, double end_beta, std::vector<TimedSegment>& out);
+  void commit_first(double end_beta, std::vector<TimedSegment>& out);
   bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
-  double start_bound(const RateLimits& limits, double scale) const;
 
   std::vector<MotorLimits> limits_;
-  int window_, chunk_;
+  double window_ms_, chunk_ms_;
+  VelocitySteps steps_;
+  std::vector<PreparedSegment> prepared_;
   std::deque<Interval> intervals_;
+  double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass
   double rate2_ = 0;            // x at the start of the first interval
   bool at_start_ = true;

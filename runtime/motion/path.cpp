@@ -25,7 +25,7 @@ void add_motion(const PathPart& part, double d, const CurvePoint& at, PathPoint&
 
 PathPoint evaluate(const PathPiece& piece, double time_ms) {
   PathPoint point;
-  CurvePoint at;
+  CurvePoint at;  // read for moved axes only
   evaluate(*piece.part[0].curve, parameter(piece.part[0], time_ms), at);
   point.position = at.position;
   add_motion(piece.part[0], time_ms, at, point);

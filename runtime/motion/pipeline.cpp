@@ -67,7 +67,10 @@ void Pipeline::State::build_stages() {
   segmenter.reset();
   lookahead.reset();
   if (segmented()) segmenter.emplace(config, kinematics);
-  if (segmented() && config.lookahead) lookahead.emplace(config.limits, config.lookahead_segments);
+  if (segmented() && config.lookahead) {
+    const double window_ms = config.lookahead_segments * config.segment_time_ms;
+    lookahead.emplace(config.limits, window_ms, config.servo_period_ms);
+  }
 }
 
 std::optional<Fault> Pipeline::State::start_at(const AxisVector& position_uu, SourceLine source) {
@@ -193,7 +196,7 @@ int Pipeline::commands_ahead(double time_ms) const { return state_->timings.ahea
 
 bool Pipeline::wants_more_segments(double time_ms) const {
   const State& s = *state_;
-  return s.lookahead && !s.fault && s.timeline.segments_after(time_ms) + s.lookahead->waiting() < s.lookahead->needed();
+  return s.lookahead && !s.fault && s.timeline.programmed_after(time_ms) + s.lookahead->planned_ms() < s.lookahead->needed_ms();
 }
 
 bool Pipeline::at_rest(double time_ms) const { return !state_->in_sequence && time_ms >= state_->timeline.end_ms(); }

@@ -40,7 +40,9 @@ class Pipeline {
   void observe(StageObservers observers);
 
   /// Hop 5: the next command. The fault is the command's own (no circle, non-finite target, ...); the pipeline then stands
-  /// as before the call. Faults of later stages (kinematics of a segment) come out of add(), end_sequence() or plan_until().
+  /// as before the call. Faults of later stages (kinematics of a segment) come out of add() or end_sequence(); nothing more is
+  /// then produced until reset(). With lookahead the motion comes to rest on the path before the place that failed; without, it
+  /// ends at horizon_ms() with the velocity that sample() gives there.
   [[nodiscard]] std::optional<runtime::Fault> add(const MotionCommand& command);
 
   /// The last command added comes to rest with its td and tsd; what follows is a new sequence. Harmless when at rest.
@@ -54,7 +56,8 @@ class Pipeline {
 
   /// How many commands are known beyond the one that executes at time_ms (0: none).
   int commands_ahead(double time_ms) const;
-  /// With lookahead: true while fewer than lookahead_segments segments are known beyond time_ms.
+  /// With lookahead: true while less is known beyond time_ms than lookahead_segments times the segment time, and a quarter.
+  /// Asked for the next tick, adding while it says so keeps horizon_ms() ahead of that tick.
   bool wants_more_segments(double time_ms) const;
 
   /// Everything added is complete and its motion ends at or before time_ms.

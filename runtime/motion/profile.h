@@ -3,7 +3,7 @@
 //
 //   speed   ___________
 //          /           \        up to seven cubic pieces; a change of destination in mid-move starts from the
-//      ___/             \___    present position, velocity and acceleration-free
+//      ___/             \___    present position, speed and acceleration
 #pragma once
 
 #include <array>
@@ -18,17 +18,21 @@ class MotorProfile {
   /// At rest at position_mu.
   static MotorProfile rest(double position_mu);
   /// From position and velocity at start_ms to rest at target_mu. Overshoots and returns where it cannot stop in time.
-  static MotorProfile move(double start_ms, double position_mu, double velocity_mu_ms, double target_mu, const JogParameters&);
+  /// accel_mu_ms2: present acceleration, continued under a jerk rate (ts < 0); otherwise the new ramp begins afresh.
+  static MotorProfile move(double start_ms, double position_mu, double velocity_mu_ms, double target_mu, const JogParameters&,
+                           double accel_mu_ms2 = 0);
   /// Ramps from velocity to +-speed (sign of direction) and stays there; horizon is endless.
-  static MotorProfile jog(double start_ms, double position_mu, double velocity_mu_ms, int direction, const JogParameters&);
+  static MotorProfile jog(double start_ms, double position_mu, double velocity_mu_ms, int direction, const JogParameters&,
+                          double accel_mu_ms2 = 0);
   /// Ramps to rest as soon as the parameters allow.
-  static MotorProfile stop(double start_ms, double position_mu, double velocity_mu_ms, const JogParameters&);
+  static MotorProfile stop(double start_ms, double position_mu, double velocity_mu_ms, const JogParameters&, double accel_mu_ms2 = 0);
   /// The same rest-to-rest move stretched so that it takes duration_ms (>= its own); for RapidVelCtrl.
   /// The cruise speed is lowered to |distance| / (duration - ramp time).
   static MotorProfile move_in_time(double start_ms, double position_mu, double target_mu, double duration_ms, const JogParameters&);
 
   double position_mu(double time_ms) const;
   double velocity_mu_ms(double time_ms) const;
+  double accel_mu_ms2(double time_ms) const;
   double end_ms() const;      // infinity for a jog without end
   double target_mu() const;   // position at the end; the present one for a jog without end
 

@@ -6,10 +6,6 @@
 namespace pmac::motion {
 namespace {
 
-/// Velocities that differ by less, relative to the fastest motor, are equal.
-constexpr double kSameVelocity = 1e-6;
-/// Speeds below this fraction of the fastest in the segment are rest.
-constexpr double kRest = 1e-9;
 
 /// x0 may lie on the border of what is possible, and beyond it by rounding; a row that hardly depends on x1 must not make
 /// a small x1 of that.
@@ -92,43 +88,16 @@ bool RateLimits::allows(double x0, double x1) const {
                      [&](const RateRow& row) { return std::abs(row.start * x0 + row.end * x1) <= 1 + 2 * kRoundingRoom; });
 }
 
-RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double scale) {
+RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
   RateLimits result;
-  const double unit = 1 / (scale * scale);
-  result.max_rate2 = scale * scale;
   for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
     const MotorCubic& q = segment.motor[m];
-    const double inv_accel = limits[m].inv_amax_ms2_mu * unit, allowed = limits[m].max_speed_mu_ms;
+    const double inv_accel = limits[m].inv_amax_ms2_mu / accel_share, allowed = limits[m].max_speed_mu_ms;
     if (inv_accel > 0) add_acceleration_rows(q, segment.duration_ms, inv_accel, result.rows);
-    const double speed = largest_speed(q, segment.duration_ms) / scale;
-    if (allowed > 0) result.max_rate2 = std::min(result.max_rate2, (allowed / speed) * (allowed / speed));
+    const double speed = largest_speed(q, segment.duration_ms);
+    if (allowed > 0 && speed > allowed) result.max_rate2 = std::min(result.max_rate2, (allowed / speed) * (allowed / speed));
   }
   return result;
-}
-
-double speed_ratio(const Segment& before, const Segment& after) {
-  double before2 = 0, after2 = 0, product = 0, difference2 = 0;
-  for (std::size_t m = 0; m < before.motor.size(); ++m) {
-    const double v0 = before.motor[m].velocity(before.duration_ms), v1 = after.motor[m].c1;
-    before2 += v0 * v0;
-    after2 += v1 * v1;
-    product += v0 * v1;
-    difference2 += (v1 - v0) * (v1 - v0);
-  }
-  const double rounding2 = kSameVelocity * kSameVelocity * std::max(before2, after2);
-  if (difference2 <= rounding2 || (!is_moving(before, true) && !is_moving(after, false))) return 1;
-  if (!is_moving(before, true) || !is_moving(after, false)) return 0;
-  const bool same_direction = product > 0 && before2 * after2 - product * product <= kSameVelocity * kSameVelocity * before2 * after2;
-  return same_direction ? std::sqrt(after2 / before2) : 0;
-}
-
-bool is_moving(const Segment& segment, bool at_end) {
-  double fastest = 0, here = 0;
-  for (const MotorCubic& q : segment.motor) {
-    fastest = std::max(fastest, largest_speed(q, segment.duration_ms));
-    here = std::max(here, std::abs(at_end ? q.velocity(segment.duration_ms) : q.c1));
-  }
-  return here > kRest * fastest;
 }
 
 }  // namespace pmac::motion

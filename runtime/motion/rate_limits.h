@@ -28,13 +28,7 @@ struct RateLimits {
   bool allows(double x0, double x1) const;
 };
 
-/// scale: x is counted in units of 1/scale^2, so that it is the same on both sides of a step in speed.
-RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double scale);
-
-/// Ratio of the speeds of two segments where they meet (after to before): 1 where they agree, 0 where the direction changes or
-/// one of them rests, so that motion cannot go through without stopping.
-double speed_ratio(const Segment& before, const Segment& after);
-/// The motors do not stand still at the start (at_end false) or end of the segment at full rate.
-bool is_moving(const Segment& segment, bool at_end);
+/// accel_share: part of the acceleration limits that may be used, 0..1.
+RateLimits rate_limits(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share);
 
 }  // namespace pmac::motion

@@ -71,11 +71,12 @@ std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
   node.command = piece.command;
   node.source = piece.source;
   node.position_mu.resize(kinematics_.count());
-  if (auto fault = kinematics_.position(evaluate(piece, 0).position, node.position_mu.data(), piece.source)) return fault;
+  const PathPoint point = evaluate(piece, 0);
+  if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   ++stretch_;
   stretch_start_ms_ = piece.start_ms;
   node.step = true;
-  fill_side(node.before, piece, 0);
+  fill_side(node.before, piece, 0, point);
   node.before.stretch = 0;
   node.before.z_rate = 0;
   open_ = std::move(node);
@@ -92,19 +93,21 @@ void Segmenter::enter_piece(const PathPiece& piece) {
     stretch_start_ms_ = piece.start_ms;
   }
   const bool is_new_side = !previous_ || piece.step_at_start || !kinematics_.is_linear();
-  if (is_new_side) fill_side(open_->after, piece, open_->time_ms - piece.start_ms);
+  const double local_ms = open_->time_ms - piece.start_ms;
+  if (is_new_side) fill_side(open_->after, piece, local_ms, evaluate(piece, local_ms));
   if (!is_new_side) open_->after = open_->before;
   open_->step = open_->step || piece.step_at_start;
 }
 
-void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms) const {
+/// point: the path at local_ms.
+void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathPoint& point) const {
   side.stretch = stretch_;
   const bool corner = piece.part_count > 1;
   side.z = corner ? piece.start_ms + local_ms - stretch_start_ms_ : parameter(piece.part[0], local_ms);
   side.z_rate = corner ? 1 : parameter_rate(piece.part[0], local_ms);
   if (!kinematics_.is_linear()) return;
   side.velocity_mu_ms.resize(kinematics_.count());
-  kinematics_.rate(evaluate(piece, local_ms).velocity, side.velocity_mu_ms.data());
+  kinematics_.rate(point.velocity, side.velocity_mu_ms.data());
 }
 
 /// Fills local_times_ with the nodes of this piece, without the one at its start.
@@ -140,7 +143,7 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, double local_ms
   node.position_mu.resize(kinematics_.count());
   const PathPoint point = evaluate(piece, local_ms);
   if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
-  fill_side(node.before, piece, local_ms);
+  fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
   fit_->add(std::move(*open_), out);
   open_ = std::move(node);
@@ -155,9 +158,10 @@ std::optional<Fault> Segmenter::close_gap(std::vector<Segment>& out) {
   const double end_ms = piece.start_ms + piece.duration_ms;
   const bool is_first = open_->before.stretch == 0;
   if (is_first || end_ms - open_->time_ms >= kMinGap_ms) return add_node(piece, piece.duration_ms, out);
-  if (auto fault = kinematics_.position(evaluate(piece, piece.duration_ms).position, open_->position_mu.data(), piece.source)) return fault;
+  const PathPoint point = evaluate(piece, piece.duration_ms);
+  if (auto fault = kinematics_.position(point.position, open_->position_mu.data(), piece.source)) return fault;
   open_->time_ms = end_ms;
-  fill_side(open_->before, piece, piece.duration_ms);
+  fill_side(open_->before, piece, piece.duration_ms, point);
   open_->after = open_->before;
   return std::nullopt;
 }

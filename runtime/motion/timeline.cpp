@@ -15,25 +15,40 @@ double end_of(const TimedSegment& segment) { return segment.start_ms + segment.d
 
 void Timeline::reset(std::vector<double> position_mu, double time_ms) {
   segments_.clear();
+  programmed_ms_.clear();
   cursor_ = 0;
   end_ms_ = sampled_ms_ = time_ms;
   rest_mu_ = std::move(position_mu);
+  end_velocity_mu_ms_.clear();
+}
+
+void Timeline::set_rest(std::vector<double> position_mu) {
+  rest_mu_ = std::move(position_mu);
+  end_velocity_mu_ms_.clear();
 }
 
 void Timeline::push(TimedSegment segment) {
   end_ms_ = end_of(segment);
-  for (std::size_t m = 0; m < rest_mu_.size(); ++m) rest_mu_[m] = segment.segment.motor[m].position(segment.segment.duration_ms);
+  const double rate = segment.rate + segment.rate_slope * segment.duration_ms, programmed_ms = segment.segment.duration_ms;
+  end_velocity_mu_ms_.resize(rest_mu_.size());
+  for (std::size_t m = 0; m < rest_mu_.size(); ++m) {
+    rest_mu_[m] = segment.segment.motor[m].position(programmed_ms);
+    end_velocity_mu_ms_[m] = rate * segment.segment.motor[m].velocity(programmed_ms);
+  }
+  programmed_ms_.push_back(programmed_end_ms_);
+  programmed_end_ms_ += segment.segment.duration_ms;
   segments_.push_back(std::move(segment));
 }
 
 void Timeline::prune() {
   segments_.erase(segments_.begin(), segments_.begin() + static_cast<std::ptrdiff_t>(cursor_));
+  programmed_ms_.erase(programmed_ms_.begin(), programmed_ms_.begin() + static_cast<std::ptrdiff_t>(cursor_));
   cursor_ = 0;
 }
 
-int Timeline::segments_after(double time_ms) const {
+double Timeline::programmed_after(double time_ms) const {
   const auto first = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return s.start_ms < time_ms; });
-  return static_cast<int>(segments_.end() - first);
+  return first == segments_.end() ? 0 : programmed_end_ms_ - programmed_ms_[static_cast<std::size_t>(first - segments_.begin())];
 }
 
 SourceLine Timeline::source_at(double time_ms) const {
@@ -47,7 +62,7 @@ void Timeline::sample(double start_ms, double period_ms, int count, std::span<do
     const double time_ms = start_ms + done * period_ms;
     while (cursor_ < segments_.size() && end_of(segments_[cursor_]) <= time_ms) ++cursor_;
     if (cursor_ == segments_.size()) {
-      sample_rest(done, count, count, position_mu, velocity_mu_ms);
+      sample_rest(time_ms, done, count, position_mu, velocity_mu_ms);
       break;
     }
     const TimedSegment& segment = segments_[cursor_];
@@ -80,11 +95,15 @@ void Timeline::sample_segment(const TimedSegment& segment, double start_ms, doub
   }
 }
 
-void Timeline::sample_rest(int first, int last, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const {
+/// Samples first..count-1, the first at time_ms, after the last segment. The very end of it still has its velocity.
+void Timeline::sample_rest(double time_ms, int first, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const {
+  const bool at_end = time_ms == end_ms_ && !end_velocity_mu_ms_.empty();
   for (std::size_t m = 0; m < rest_mu_.size(); ++m) {
-    const std::size_t row = m * static_cast<std::size_t>(count);
-    std::fill(position_mu.begin() + row + first, position_mu.begin() + row + last, rest_mu_[m]);
-    if (!velocity_mu_ms.empty()) std::fill(velocity_mu_ms.begin() + row + first, velocity_mu_ms.begin() + row + last, 0.0);
+    const auto row = static_cast<std::ptrdiff_t>(m) * count;
+    std::fill(position_mu.begin() + row + first, position_mu.begin() + row + count, rest_mu_[m]);
+    if (velocity_mu_ms.empty()) continue;
+    std::fill(velocity_mu_ms.begin() + row + first, velocity_mu_ms.begin() + row + count, 0.0);
+    if (at_end) velocity_mu_ms[static_cast<std::size_t>(row + first)] = end_velocity_mu_ms_[m];
   }
 }
 

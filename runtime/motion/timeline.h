@@ -14,7 +14,7 @@ class Timeline {
   /// Nothing but rest at position_mu.
   void reset(std::vector<double> position_mu, double time_ms);
   /// The motors stand here until the next segment (and from its start where that begins).
-  void set_rest(std::vector<double> position_mu) { rest_mu_ = std::move(position_mu); }
+  void set_rest(std::vector<double> position_mu);
 
   /// Starts at or after the end of the one before.
   void push(TimedSegment segment);
@@ -24,8 +24,8 @@ class Timeline {
   double end_ms() const { return end_ms_; }
   double sampled_ms() const { return sampled_ms_; }
   const std::vector<double>& rest_mu() const { return rest_mu_; }
-  /// Segments that begin at or after time_ms.
-  int segments_after(double time_ms) const;
+  /// Programmed time of the segments that begin at or after time_ms.
+  double programmed_after(double time_ms) const;
   SourceLine source_at(double time_ms) const;
 
   /// See Pipeline::sample().
@@ -34,13 +34,16 @@ class Timeline {
  private:
   void sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
                       std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
-  void sample_rest(int first, int last, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
+  void sample_rest(double time_ms, int first, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
 
   std::deque<TimedSegment> segments_;
+  std::deque<double> programmed_ms_;  // [segment] programmed time of all segments before it
+  double programmed_end_ms_ = 0;
   std::size_t cursor_ = 0;          // first segment that ends after the last sample
   double end_ms_ = 0;
   double sampled_ms_ = 0;
   std::vector<double> rest_mu_;     // after the last segment
+  std::vector<double> end_velocity_mu_ms_;  // at its end: not zero where the motion goes on in a segment to come
 };
 
 }  // namespace pmac::motion

@@ -155,3 +155,12 @@ TEST_CASE("refused commands are named with the controller's number, exit 3, and 
   CHECK(contains(r.err, "error #20"));
   CHECK(contains(r.out, "\"final\": 1000.0"));
 }
+
+TEST_CASE("a circle without segmentation is said to be a straight line", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X #2->1000Y\nopen prog 1\nF10 normal k-1\ncircle1 X10 Y0 I5 J0\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e '&1b1r' --json");
+  CHECK(r.code == 0);
+  CHECK(contains(r.err, "a.pmc:4: warning"));
+  CHECK(contains(r.err, "SegMoveTime"));
+}

@@ -25,7 +25,7 @@ std::vector<std::vector<std::string>> csv(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("--json holds status, time, moves, motors, outputs and faults", "[tools]") {
+TEST_CASE("option json holds status, time, moves, motors, outputs and faults", "[tools]") {
   const Workspace w;
   const ToolResult r = w.run("pmac-run", program("02_basic_moves.pmc") + " -e '&1b1r' --json");
   REQUIRE(r.code == 0);
@@ -50,7 +50,7 @@ TEST_CASE("--json holds status, time, moves, motors, outputs and faults", "[tool
   CHECK_FALSE(summary.contains("outputs"));
 }
 
-TEST_CASE("--record has a row at 0, one a servo cycle, and the axes as forward map of the motors", "[tools]") {
+TEST_CASE("option record has a row at 0, one a servo cycle, and the axes as forward map of the motors", "[tools]") {
   const Workspace w;
   REQUIRE(w.run("pmac-run", program("02_basic_moves.pmc") + " -e '&1b1r' --record r.csv").code == 0);
   const auto rows = csv(w.read("r.csv"));
@@ -62,7 +62,7 @@ TEST_CASE("--record has a row at 0, one a servo cycle, and the axes as forward m
   for (std::size_t k = 1; k < rows.size(); k += 97) REQUIRE(std::stod(rows[k][1]) == Approx(1000 * std::stod(rows[k][2])).margin(1e-9));
 }
 
-TEST_CASE("--record names axes with their coordinate system where several have motors", "[tools]") {
+TEST_CASE("option record names axes with their coordinate system where several have motors", "[tools]") {
   const Workspace w;
   w.write("two.pmc", "&1\n#1->1000X\n&2\n#2->100X\nopen prog 1\nF10 X1\nclose\n");
   const ToolResult r = w.run("pmac-run", "two.pmc -e '&1b1r &2b1r' --record r.csv --json");
@@ -86,7 +86,7 @@ TEST_CASE("a compiled module runs like its source", "[tools]") {
   CHECK(w.read("a.csv") == w.read("b.csv"));
 }
 
-TEST_CASE("--gather writes what the program gathers", "[tools]") {
+TEST_CASE("option gather writes what the program gathers", "[tools]") {
   const Workspace w;
   REQUIRE(w.run("pmac-run", program("03_scurve_loop.pmc") + " -e '&1b2r' --gather g.csv").code == 0);
   const auto rows = csv(w.read("g.csv"));
@@ -103,14 +103,14 @@ TEST_CASE("--gather writes what the program gathers", "[tools]") {
   CHECK(std::stod(items[2][0]) - std::stod(items[1][0]) == Approx(10 * 0.00044274211).epsilon(1e-9));
 }
 
-TEST_CASE("--plot draws pictures", "[tools]") {
+TEST_CASE("option plot draws pictures", "[tools]") {
   const Workspace w;
   REQUIRE(w.run("pmac-run", program("06_oval.pmc") + " -e '&1b5r' --plot o.svg --plot o.png").code == 0);
   CHECK(w.read("o.svg").find("<svg") != std::string::npos);
   CHECK(w.read("o.png").substr(1, 3) == "PNG");
 }
 
-TEST_CASE("--emit prints the records of every hop", "[tools]") {
+TEST_CASE("option emit prints the records of every hop", "[tools]") {
   const Workspace w;
   for (const char* stage : {"commands", "path", "segments", "lookahead", "servo"}) {
     const ToolResult r = w.run("pmac-run", program("07_oval_lookahead.pmc") + " -e '&1b5r' --emit=" + stage);

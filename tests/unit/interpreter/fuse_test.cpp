@@ -13,25 +13,55 @@ using enum pmac::bytecode::Opcode;
 
 namespace {
 
-/// Programs of nothing but instructions that can be fused, with few registers and variables so that they meet.
-std::vector<Instruction> fusible_code(std::mt19937& random) {
-  static constexpr Opcode kOps[] = {kLoadInt, kLoadConst, kLoadP, kLoadP, kAdd, kSub, kMul, kDiv, kStoreP, kStoreP,
-                                    kEqual, kNotEqual, kLess, kLessEqual, kJumpIfTrue, kJumpIfFalse, kLoopIfTrue};
-  const auto below = [&](unsigned limit) { return static_cast<unsigned>(random() % limit); };
-  const unsigned size = 5 + below(40);
-  std::vector<Instruction> code;
-  for (unsigned pc = 0; pc + 1 < size; ++pc) {
-    const Opcode op = kOps[below(std::size(kOps))];
-    switch (opcode_info(op).format) {
-      case OperandFormat::kRegRegReg: code.push_back(bc(op, below(5), below(5), below(5))); break;
-      case OperandFormat::kRegJump: code.push_back(imm(op, below(5), static_cast<int>(pc + 1 + below(size - pc - 1)))); break;
-      case OperandFormat::kRegLoop: code.push_back(imm(op, below(5), static_cast<int>(below(pc + 1)))); break;
-      default: code.push_back(imm(op, below(5), static_cast<int>(below(4)))); break;
-    }
+/// Random programs of nothing but instructions that can be fused, with few registers and variables so that they meet. Half
+/// of the code is expressions and conditions as a compiler writes them, some with one register changed.
+class FusibleCode {
+ public:
+  explicit FusibleCode(std::mt19937& random) : random_(random) {}
+
+  std::vector<Instruction> make() {
+    code_.clear();
+    size_ = 8 + below(40);
+    while (code_.size() + 1 < size_) below(2) == 0 ? add(any()) : add_expression();
+    code_.push_back(imm(kReturn));
+    return code_;
   }
-  code.push_back(imm(kReturn));
-  return code;
-}
+
+ private:
+  static constexpr Opcode kLoads[] = {kLoadInt, kLoadConst, kLoadP};
+  static constexpr Opcode kOperations[] = {kAdd, kSub, kMul, kDiv, kEqual, kNotEqual, kLess, kLessEqual};
+  static constexpr Opcode kUsers[] = {kStoreP, kJumpIfTrue, kJumpIfFalse, kLoopIfTrue};
+
+  unsigned below(unsigned limit) { return static_cast<unsigned>(random_() % limit); }
+  Instruction load(unsigned reg, Opcode op) { return imm(op, reg, static_cast<int>(below(4))); }
+  Instruction user(unsigned reg) {
+    const Opcode op = kUsers[below(4)];
+    const auto pc = static_cast<unsigned>(code_.size());
+    if (op == kLoopIfTrue) return imm(op, reg, static_cast<int>(below(pc + 1)));
+    if (op == kStoreP || pc + 2 > size_) return imm(kStoreP, reg, static_cast<int>(below(4)));
+    return imm(op, reg, static_cast<int>(pc + 1 + below(size_ - pc - 1)));
+  }
+  Instruction operation() { return bc(kOperations[below(8)], below(5), below(5), below(5)); }
+  Instruction any() {
+    const unsigned kind = below(3);
+    return kind == 0 ? load(below(5), kLoads[below(3)]) : kind == 1 ? operation() : user(below(5));
+  }
+  void add(Instruction in) {
+    if (code_.size() + 1 < size_) code_.push_back(in);
+  }
+  void add_expression() {
+    const unsigned first = below(5), second = below(5), result = below(5), loads = below(3);
+    if (loads == 2) add(load(first, kLoadP));
+    if (loads >= 1) add(load(second, kLoads[below(3)]));
+    const Instruction plain = operation();
+    add(bc(plain.op, result, below(8) == 0 ? below(5) : first, below(8) == 0 ? below(5) : second));
+    add(below(3) == 0 ? operation() : user(below(8) == 0 ? below(5) : result));
+  }
+
+  std::mt19937& random_;
+  std::vector<Instruction> code_;
+  unsigned size_ = 0;
+};
 
 Bench fusible_bench() {
   Bench bench({imm(kReturn)});
@@ -99,7 +129,7 @@ TEST_CASE("fusing: fused programs do exactly what the plain ones do", "[fuse]") 
   std::mt19937 random(21);
   Bench bench = fusible_bench();
   for (int round = 0; round < 20000; ++round) {
-    bench.module.programs[0].code = fusible_code(random);
+    bench.module.programs[0].code = FusibleCode(random).make();
     REQUIRE(verify(bench.module) == "");
     Module fused = bench.module;
     fuse(fused);
@@ -115,7 +145,7 @@ TEST_CASE("fusing: every sequence of the table occurs in the random programs", "
   std::set<Opcode> seen;
   Bench bench = fusible_bench();
   for (int round = 0; round < 20000; ++round) {
-    bench.module.programs[0].code = fusible_code(random);
+    bench.module.programs[0].code = FusibleCode(random).make();
     fuse(bench.module);
     for (const Instruction& in : bench.module.programs[0].code) {
       if (in.op >= kCount) seen.insert(in.op);

@@ -151,7 +151,8 @@ TEST_CASE("lookahead: corners and random programs keep every limit at servo rate
     }
     PipelineConfig config = with_lookahead(n % 2 ? 40 : 200);
     set_limits(config, 80, 0.7);
-    const Run r = run(config, p, {}, n % 3 == 0 ? 0.1 : kServoPeriod_ms);
+    config.servo_period_ms = n % 3 == 0 ? 0.1 : kServoPeriod_ms;
+    const Run r = run(config, p, {}, config.servo_period_ms);
     INFO("program " << n);
     check_limits(r, 80, 0.7);
   }
@@ -179,6 +180,42 @@ TEST_CASE("lookahead: a short window is slower, never wrong", "[motion][lookahea
 
 TEST_CASE("lookahead: limits hold at any sampling rate", "[motion][lookahead]") {
   for (const double period : {0.05, 0.2, 1.0, 2.0}) check_limits(run(with_lookahead(), oval(), {}, period));
+}
+
+TEST_CASE("lookahead: a fine polyline without ramps is passed without stopping, within the limits of the samples", "[motion][lookahead]") {
+  for (const double step_mm : {0.02, 0.1}) {
+    Program p;
+    p.feed(200).ta(0);
+    for (int i = 1; i <= 5000; ++i) p.xy(50 * std::sin(i * step_mm / 50), 50 - 50 * std::cos(i * step_mm / 50));
+    const Run r = run(with_lookahead(), p);
+    check_limits(r);
+    // The circle itself allows 200 mm/s; part of the acceleration is kept for the steps in direction.
+    CHECK(r.end_ms <= 1.4 * 5000 * step_mm / 0.2 + 400);  // 400: ramps
+    PipelineConfig strict = with_lookahead();
+    strict.servo_period_ms = 0;
+    const Run stops = run(strict, p);
+    check_limits(stops);
+    CHECK(stops.end_ms > 5 * r.end_ms);
+  }
+}
+
+TEST_CASE("lookahead: random polylines keep limits at servo rate", "[motion][lookahead]") {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int n = 0; n < 40; ++n) {
+    Program p;
+    p.ta(unit(random) < 0.7 ? 0 : unit(random)).feed(50 + 250 * unit(random));
+    double heading = 0, x = 0, y = 0;
+    const double turn = 0.3 * unit(random) * unit(random), length = 2 * unit(random) * unit(random);
+    for (int i = 0; i < 400; ++i) {
+      if (unit(random) < 0.02) p.feed(50 + 250 * unit(random));
+      heading += turn * (2 * unit(random) - 1) + (unit(random) < 0.01 ? 1.5 : 0);
+      const double l = length * unit(random) + 0.005;
+      p.xy(x += l * std::cos(heading), y += l * std::sin(heading));
+    }
+    INFO("polyline " << n);
+    check_limits(run(with_lookahead(), p));
+  }
 }
 
 TEST_CASE("lookahead: the path is that of the run without it", "[motion][lookahead]") {

@@ -59,8 +59,8 @@ TEST_CASE("jog PLC: a held button jogs the selected motor, within its stopping d
   CHECK(bench.motor(2).final_mu < -500);
   // V^2 |JogTa| / 2 + V Ts / 2 = 500 with JogTa = -10 and Ts = 5 ms
   const double steady = (-2.5 + std::sqrt(2.5 * 2.5 + 4 * 5.0 * 500.0)) / 10.0;
-  CHECK(bench.motor(1).max_speed_mu_ms < 1.03 * steady);
-  CHECK(bench.motor(1).max_speed_mu_ms > 0.9 * steady);
+  CHECK(bench.motor(1).max_speed_mu_ms <= steady);
+  CHECK(bench.motor(1).max_speed_mu_ms > 0.98 * steady);
   // After the release it stops within the distance.
   double at_release = 0;
   for (std::size_t k = 0; k < bench.time_ms.size() && bench.time_ms[k] <= 601.0; ++k) at_release = bench.motor_mu[k][1];
