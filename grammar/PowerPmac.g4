@@ -2,61 +2,19 @@
 //
 // The rules describe text after the preprocessor. Words are recognised by the class WordLexer (compiler/frontend/power_pmac), which
 // cuts glued words such as ta500ts0 or X1.5Y4 and knows the declared names: the lexer below only finds where a word begins.
-// A line end is white space; where it matters a predicate looks at the line numbers of two neighbouring tokens.
+// A line end is white space. Where lines matter, the pass of token_pass.cpp has told the parser by the tokens: JOIN stands between
+// words of one motion line, axis words have types of their own (C90 is AXIS, C6 = 1 begins with LETTER_C), and an operator that
+// begins a line is no binary one. So every decision but a few of on-line commands is made by one or two tokens.
 grammar PowerPmac;
 
 @parser::members {
-/// By token index: the token stands inside parentheses or brackets. Filled by whoever owns the token stream.
-const std::vector<bool>* inside_parentheses = nullptr;
-
 /// The next token is on the line of the token before it.
 bool sameLine() { return _input->LT(1)->getLine() == _input->LT(-1)->getLine(); }
-
-/// An expression goes on: on the same line, or on the next one inside parentheses.
-bool continues() {
-  const size_t index = _input->LT(1)->getTokenIndex();
-  return sameLine() || (inside_parentheses && index < inside_parentheses->size() && (*inside_parentheses)[index]);
-}
-
-/// C90, R10, I1, M3 and D5 are variables where an assignment operator follows the number or the closing parenthesis.
-bool assignmentFollowsNumber() {
-  ssize_t next = 2;
-  if (_input->LA(2) == LEFT) {
-    int depth = 0;
-    do {
-      const size_t type = _input->LA(next++);
-      if (type == antlr4::Token::EOF) return false;
-      depth += type == LEFT ? 1 : type == RIGHT ? -1 : 0;
-    } while (depth > 0);
-  } else if (_input->LA(2) == NUMBER) {
-    next = 3;
-  } else {
-    return false;
-  }
-  const size_t type = _input->LA(next);
-  return (type >= ASSIGN && type <= SYNC_DECREMENT) || (type == COMMA && _input->LA(1) != LETTER_R && _input->LA(1) != LETTER_C);
-}
-bool startsMove() {
-  switch (_input->LA(1)) {
-    case AXIS: case VECTOR: return true;
-    case LETTER_C: case LETTER_I: case LETTER_R: return !assignmentFollowsNumber();
-    default: return false;
-  }
-}
-bool moveFollows() { return sameLine() && startsMove(); }
-bool startsCode() {
-  switch (_input->LA(1)) {
-    case CODE: return true;
-    case LETTER_M: case LETTER_D: return !assignmentFollowsNumber();
-    default: return false;
-  }
-}
-bool startsAssignment() { return !startsMove() && !startsCode(); }
 }
 
 tokens {
   // what a WORD can turn out to be
-  NAME, MEMBER, AXIS, VECTOR, CODE, VAR, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
+  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, VAR, JOIN, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
   // keywords of both tables
   OPEN, CLOSE, PROG, PLC, SUBPROG, FORWARD, INVERSE, ROTARY, GLOBAL, CSGLOBAL, PTR, LOCAL, SUB,
   ABORT, ADISABLE, BEGIN, CMD, DDISABLE, DISABLE, DKILL, ENABLE, HOLD, HOME, HOMEZ, JOG, JOGRET, KILL, LH, PAUSE, PMATCH, RESUME,
@@ -96,10 +54,9 @@ statement
   | switchStatement
   | label
   | declaration
-  | {startsMove()}? move
   | motionLine
-  | {startsCode()}? codeLine
-  | {startsAssignment()}? assignment
+  | codeLine
+  | assignment
   | simpleStatement
   | onlineInBuffer
   ;
@@ -133,7 +90,7 @@ simpleStatement
   | kind=(DWELL | DELAY) data
   | kind=(CSET | CCLR | CEXEC | CSKIP | CCALL | CDEF | CUNDEF) data?
   | kind=(BSTART | BSTOP)
-  | PSET axisWord ({sameLine()}? axisWord)*
+  | PSET (PSET_AXIS data)+
   | kind=(PCLR | PSTORE | PLOAD | PREAD | VREAD | DREAD | FREAD | TREAD) axisList?
   | programControl
   ;
@@ -146,7 +103,7 @@ readLetter : AXIS | VECTOR | CODE | VAR | LETTER_C | LETTER_D | LETTER_F | LETTE
 // --- motion -------------------------------------------------------------------------------------------------------------------
 
 /// Mode and parameter words, and the move that they begin when it stands on the same line.
-motionLine : motionWord ({sameLine()}? motionWord)* ({moveFollows()}? move)? ;
+motionLine : motionWord (JOIN motionWord)* (JOIN move)? | move ;
 
 motionWord
   : kind=(LINEAR | RAPID)
@@ -154,18 +111,18 @@ motionWord
   | kind=(PVT | SPLINE | TSEL | CCR | TA | TD | TS | TSD | TM | LETTER_F) data
   | kind=CCMODE data
   | kind=(ABS | INC | FRAX | FRAX2 | NOFRAX | NOFRAX2) axisList?
-  | kind=NORMAL vectorWord ({sameLine()}? vectorWord)*
+  | kind=NORMAL (NORMAL_VECTOR data)+
   ;
 
-move : moveWord ({moveFollows()}? moveWord)* ;
+move : moveWord (JOIN moveWord)* ;
 moveWord : axisWord | vectorWord | radiusWord ;
-axisWord : (AXIS | LETTER_C) data (':' velocity=data)? ('^' trigger=data)? ;
-vectorWord : (VECTOR | LETTER_I) data ;
-radiusWord : LETTER_R data ;
+axisWord : AXIS data (':' velocity=data)? ('^' trigger=data)? ;
+vectorWord : VECTOR data ;
+radiusWord : RADIUS data ;
 axisList : '(' axisName (',' axisName)* ')' ;
 axisName : AXIS | LETTER_C | LETTER_R | VECTOR | LETTER_I | NAME ;
 
-codeLine : (CODE | LETTER_M | LETTER_D) data ;
+codeLine : CODE data ;
 
 /// The argument of a word: a signed constant, or an expression in parentheses. A bare variable is accepted to be refused.
 data
@@ -185,16 +142,16 @@ assignment
 lvalue : variable | reference ;
 variable : (VAR | LETTER_C | LETTER_D | LETTER_I | LETTER_M | LETTER_R) (NUMBER | '(' expression ')') ;
 reference : NAME suffix* ;
-suffix : '[' expression (',' expression)* ']' | '.' MEMBER | {sameLine()}? arguments ;
+suffix : '[' expression (',' expression)* ']' | '.' MEMBER | arguments ;
 
 expression
   : operation=('-' | '+' | '~' | '!') expression
-  | expression {continues()}? operation=('*' | '/' | '%' | '&') expression
-  | expression {continues()}? operation=('<<' | '>>') expression
-  | expression {continues()}? operation=('+' | '-' | '|' | '^') expression
-  | expression {continues()}? operation=('==' | '!=' | '<>' | '<' | '>' | '<=' | '>=' | '!>' | '!<' | '~' | '!~') expression
-  | expression {continues()}? operation='&&' expression
-  | expression {continues()}? operation='||' expression
+  | expression operation=('*' | '/' | '%' | '&') expression
+  | expression operation=('<<' | '>>') expression
+  | expression operation=('+' | '-' | '|' | '^') expression
+  | expression operation=('==' | '!=' | '<>' | '<' | '>' | '<=' | '>=' | '!>' | '!<' | '~' | '!~') expression
+  | expression operation='&&' expression
+  | expression operation='||' expression
   | '(' expression ')'
   | NUMBER
   | ABS '(' expression ')'
@@ -211,12 +168,12 @@ declaration
   ;
 declarator : NAME ('(' expression ')')? ('=' expression)? ;
 pointerDeclarator : NAME ('(' NUMBER ')')? '->' pointerTarget ;
-pointerTarget : '*' | IO_POINTER | reference ({sameLine()}? NUMBER)* ;
+pointerTarget : '*' | IO_POINTER | reference NUMBER* ;
 
 // --- motors, coordinate systems, programs, ports: statements that are on-line commands too ------------------------------------
 
 programControl
-  : kind=(ENABLE | DISABLE | PAUSE | RESUME | STEP) PLC numberList
+  : kind=(ENABLE | DISABLE | PAUSE | RESUME | STEP) PLC plcList
   | kind=(ABORT | ADISABLE | DDISABLE | DISABLE | ENABLE | HOLD | PAUSE | RESUME | RUN | STEP | HOME | HOMEZ | KILL | DKILL) numberList?
   | kind=(BEGIN | START) startItem (',' startItem)*
   | LH direction=('\\' | '<' | '>') numberList?
@@ -230,7 +187,9 @@ programControl
 startItem : NUMBER (':' programName)? | ':' programName | NAME ;
 programName : NUMBER | NAME ;
 numberList : numberItem (',' numberItem)* ;
-numberItem : NUMBER ('..' NUMBER)? | NAME | '(' expression ')' | '*' ;
+numberItem : NUMBER ('..' NUMBER)? | '(' expression ')' | '*' ;
+plcList : plcItem (',' plcItem)* ;
+plcItem : NUMBER ('..' NUMBER)? | NAME | '(' expression ')' ;
 
 jogAction
   : operation=('+' | '-' | '/') numberList?
@@ -243,7 +202,7 @@ jogDistance : '*' | data ;
 online
   : declaration
   | '#' numberList? ('->' ({sameLine()}? axisDefinition)?)?
-  | '&' numberList?
+  | (COORD | '&') numberList?
   | LETTER_M NUMBER (',' NUMBER)? '->' ({sameLine()}? pointerTarget)?
   | reference '->' pointerTarget
   | assignment
@@ -259,7 +218,7 @@ online
   | ON_J onlineJog
   | ON_OUT data
   | ECHO NUMBER?
-  | '%' ({sameLine()}? data)?
+  | ('%' | LINE_PERCENT) ({sameLine()}? data)?
   | single=('?' | '<' | '>' | '\\' | '$' | RESET)
   | OTHER_COMMAND ({sameLine()}? ~(EOF | ';'))*
   | programControl
@@ -272,8 +231,8 @@ onlineJog : operation=('+' | '-' | '/') | operation=('=' | '==' | ':' | '^') ({s
 
 axisDefinition
   : LETTER_I
-  | CODE ({sameLine()}? NUMBER)?
-  | axisTerm ({sameLine()}? axisTerm)*
+  | CODE NUMBER?
+  | axisTerm+
   ;
 axisTerm : sign=('+' | '-')? NUMBER? axis=(AXIS | LETTER_C | NAME) | sign=('+' | '-')? NUMBER ;
 

@@ -39,6 +39,10 @@ std::string Frontend::tokens(const std::string& name, std::string text) {
   std::string out;
   for (const antlr4::Token* token : tree->tokens->getTokens()) {
     if (token->getType() == antlr4::Token::EOF) break;
+    if (token->getType() == grammar::PowerPmacParser::JOIN) {
+      out += "  JOIN\n";
+      continue;
+    }
     const source::Span span = tree->span_of(*token);
     const source::LineColumn at = state_->sources.line_column(span.file, span.begin);
     std::string kind = token_name(token->getType());
@@ -53,7 +57,7 @@ namespace {
 void print_tree(const SyntaxTree& tree, antlr4::tree::ParseTree* node, int depth, std::string& out) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
   if (auto* leaf = dynamic_cast<antlr4::tree::TerminalNode*>(node)) {
-    if (leaf->getSymbol()->getType() != antlr4::Token::EOF) out += fmt::format("{}'{}'\n", indent, tree.text_of(*leaf->getSymbol()));
+    if (leaf->getSymbol()->getType() != grammar::PowerPmacParser::JOIN && leaf->getSymbol()->getType() != antlr4::Token::EOF) out += fmt::format("{}'{}'\n", indent, tree.text_of(*leaf->getSymbol()));
     return;
   }
   const auto* rule = dynamic_cast<antlr4::ParserRuleContext*>(node);

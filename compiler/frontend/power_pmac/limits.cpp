@@ -31,7 +31,6 @@ class NestingScan {
     if (const char* problem = take_brackets(type, new_line)) return problem;
     return take_control(type);
   }
-  bool inside_parentheses() const { return parentheses_ > 0; }
 
  private:
   const char* take_brackets(std::size_t type, bool new_line) {
@@ -92,11 +91,9 @@ class NestingScan {
 bool within_limits(SyntaxTree& tree, source::Diagnostics& diagnostics) {
   NestingScan scan;
   std::size_t line = 0;
-  tree.inside_parentheses.reserve(tree.tokens->size());
   for (const antlr4::Token* token : tree.tokens->getTokens()) {
     const char* problem = scan.take(token->getType(), token->getLine() != line);
     line = token->getLine();
-    tree.inside_parentheses.push_back(scan.inside_parentheses());
     if (!problem) continue;
     diagnostics.error("PM2010", tree.span_of(*token), problem);
     return false;

@@ -53,6 +53,14 @@ void Lowering::add_control(ControlVerb verb, source::Span span, std::vector<ir::
   out.push_back(ir::make_stmt(span, ir::Control{verb, std::move(arguments)}));
 }
 
+/// The numbers of a range such as 1..3.
+void Lowering::append_range(antlr4::Token* from, antlr4::Token* to, source::Span span, std::vector<ir::ExprPtr>& numbers) {
+  const auto first = whole_number(from, kMaxListed);
+  const auto last = whole_number(to, kMaxListed);
+  if (first && last && *first > *last) diagnostics_.error("PM3005", span, "a range goes from the lower to the higher number");
+  for (std::int64_t n = first.value_or(0); first && last && n <= *last; ++n) numbers.push_back(ir::make_number(static_cast<double>(n), span));
+}
+
 /// One expression for each number of a list such as 1..3,7; a null one where there is no list.
 std::vector<ir::ExprPtr> Lowering::lower_number_list(P::NumberListContext* list) {
   std::vector<ir::ExprPtr> numbers;
@@ -61,21 +69,22 @@ std::vector<ir::ExprPtr> Lowering::lower_number_list(P::NumberListContext* list)
     return numbers;
   }
   for (P::NumberItemContext* item : list->numberItem()) {
+    if (item->expression()) numbers.push_back(lower_expression(item->expression()));
+    else if (item->STAR()) not_supported(span_of(item), "the list * of all motors or coordinate systems");
+    else if (item->NUMBER().size() == 1) numbers.push_back(lower_number(token_of(item->NUMBER(0))));
+    else if (item->NUMBER().size() == 2) append_range(token_of(item->NUMBER(0)), token_of(item->NUMBER(1)), span_of(item), numbers);
+  }
+  return numbers;
+}
+
+std::vector<ir::ExprPtr> Lowering::lower_plc_list(P::PlcListContext* list) {
+  std::vector<ir::ExprPtr> numbers;
+  for (P::PlcItemContext* item : list->plcItem()) {
     const source::Span span = span_of(item);
-    if (item->NAME()) {
-      numbers.push_back(std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}}));
-    } else if (item->expression()) {
-      numbers.push_back(lower_expression(item->expression()));
-    } else if (item->STAR()) {
-      not_supported(span, "the list * of all motors or coordinate systems");
-    } else if (item->NUMBER().size() == 1) {
-      numbers.push_back(lower_number(token_of(item->NUMBER(0))));
-    } else if (item->NUMBER().size() == 2) {
-      const auto first = whole_number(token_of(item->NUMBER(0)), kMaxListed);
-      const auto last = whole_number(token_of(item->NUMBER(1)), kMaxListed);
-      if (first && last && *first > *last) diagnostics_.error("PM3005", span, "a range goes from the lower to the higher number");
-      for (std::int64_t n = first.value_or(0); first && last && n <= *last; ++n) numbers.push_back(ir::make_number(static_cast<double>(n), span));
-    }
+    if (item->NAME()) numbers.push_back(std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}}));
+    else if (item->expression()) numbers.push_back(lower_expression(item->expression()));
+    else if (item->NUMBER().size() == 1) numbers.push_back(lower_number(token_of(item->NUMBER(0))));
+    else if (item->NUMBER().size() == 2) append_range(token_of(item->NUMBER(0)), token_of(item->NUMBER(1)), span, numbers);
   }
   return numbers;
 }
@@ -108,7 +117,8 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
     verb = verb_of(control->kind->getType(), control->PLC() != nullptr);
   }
   std::vector<ir::ExprPtr> numbers;
-  if (!control->numberList() && online_) numbers = acts_on_motors(verb) ? addressed_motors(span) : addressed_coords(span);
+  if (control->plcList()) numbers = lower_plc_list(control->plcList());
+  else if (!control->numberList() && online_) numbers = acts_on_motors(verb) ? addressed_motors(span) : addressed_coords(span);
   else numbers = lower_number_list(control->numberList());
   for (ir::ExprPtr& number : numbers) {
     std::vector<ir::ExprPtr> arguments;
@@ -160,12 +170,14 @@ void Lowering::lower_jog(P::JogActionContext* jog, source::Span span, ir::Body& 
 }
 
 void Lowering::lower_pset(P::SimpleStatementContext* statement, ir::Body& out) {
-  for (P::AxisWordContext* word : statement->axisWord()) {
-    const int axis = axis_index(word->start);
+  const auto axes = statement->PSET_AXIS();
+  const auto values = statement->data();
+  for (std::size_t i = 0; i < std::min(axes.size(), values.size()); ++i) {
+    const source::Span span = source::join(span_of(token_of(axes[i])), span_of(values[i]));
     std::vector<ir::ExprPtr> arguments;
-    arguments.push_back(ir::make_number(axis, span_of(word)));
-    arguments.push_back(lower_data(word->data(0)));
-    add_control(ControlVerb::kPset, span_of(word), std::move(arguments), out);
+    arguments.push_back(ir::make_number(axis_index(token_of(axes[i])), span));
+    arguments.push_back(lower_data(values[i]));
+    add_control(ControlVerb::kPset, span, std::move(arguments), out);
   }
 }
 

@@ -62,7 +62,7 @@ void Lowering::lower_spline_times(const std::vector<P::MotionWordContext*>& word
   while (last + 1 < words.size() && last - first < 2 && words[last + 1]->kind && words[last + 1]->kind->getType() == P::SPLINE) ++last;
   for (std::size_t i = 0; i < 3; ++i) {
     P::MotionWordContext* word = words[std::min(first + i, last)];
-    out.push_back(ir::make_stmt(span_of(word), ir::SetParameter{kTimes[i], lower_data(word->data())}));
+    out.push_back(ir::make_stmt(span_of(word), ir::SetParameter{kTimes[i], lower_data(word->data(0))}));
   }
   at = last;
 }
@@ -71,7 +71,7 @@ void Lowering::lower_motion_word(P::MotionWordContext* word, ir::Body& out) {
   if (!word->kind) return;
   const source::Span span = span_of(word);
   const std::size_t kind = word->kind->getType();
-  if (const auto parameter = parameter_of(kind)) return out.push_back(ir::make_stmt(span, ir::SetParameter{*parameter, lower_data(word->data())}));
+  if (const auto parameter = parameter_of(kind)) return out.push_back(ir::make_stmt(span, ir::SetParameter{*parameter, lower_data(word->data(0))}));
   switch (kind) {
     case P::LINEAR: return out.push_back(ir::make_stmt(span, ir::SetMode{ir::MoveMode::kLinear}));
     case P::RAPID: return out.push_back(ir::make_stmt(span, ir::SetMode{ir::MoveMode::kRapid}));
@@ -82,7 +82,7 @@ void Lowering::lower_motion_word(P::MotionWordContext* word, ir::Body& out) {
     }
     case P::PVT:
       out.push_back(ir::make_stmt(span, ir::SetMode{ir::MoveMode::kPvt}));
-      return out.push_back(ir::make_stmt(span, ir::SetParameter{MotionParameter::kPvtTime, lower_data(word->data())}));
+      return out.push_back(ir::make_stmt(span, ir::SetParameter{MotionParameter::kPvtTime, lower_data(word->data(0))}));
     case P::NORMAL: return lower_normal(word, out);
     default: return lower_axis_mode(word, out);
   }
@@ -90,10 +90,12 @@ void Lowering::lower_motion_word(P::MotionWordContext* word, ir::Body& out) {
 
 void Lowering::lower_normal(P::MotionWordContext* word, ir::Body& out) {
   ir::SetNormal normal;
-  for (P::VectorWordContext* component : word->vectorWord()) {
-    const int index = vector_index(text_of(component->start));
-    if (index > 2) return not_supported(span_of(component), "a plane normal of the XX YY ZZ axes");
-    if (index >= 0) normal.vector[index] = lower_data(component->data());
+  const auto letters = word->NORMAL_VECTOR();
+  const auto values = word->data();
+  for (std::size_t i = 0; i < std::min(letters.size(), values.size()); ++i) {
+    const int index = vector_index(text_of(token_of(letters[i])));
+    if (index > 2) return not_supported(span_of(token_of(letters[i])), "a plane normal of the XX YY ZZ axes");
+    if (index >= 0) normal.vector[index] = lower_data(values[i]);
   }
   for (ir::ExprPtr& component : normal.vector)
     if (!component) component = ir::make_number(0, span_of(word));

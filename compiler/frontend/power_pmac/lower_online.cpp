@@ -101,7 +101,7 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
   const source::Span span = span_of(online);
   if (online->declaration()) return lower_declaration(online->declaration(), out);
   if (online->HASH() && online->ARROW()) return lower_axis_definition(online, out);
-  if (online->HASH() || online->AMPERSAND()) return lower_address(online, out);
+  if (online->HASH() || online->AMPERSAND() || online->COORD()) return lower_address(online, out);
   if (online->ARROW()) return lower_pointer_command(online, out);
   if (online->assignment()) return lower_assignment(online->assignment(), out);
   if (online->onlineListAssignment()) return lower_series(online->onlineListAssignment(), out);
@@ -141,7 +141,7 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
 
 /// #1 and &1 last; lists hold for the next command of the line.
 void Lowering::lower_address(P::OnlineContext* online, ir::Body& out) {
-  const bool coord = online->AMPERSAND() != nullptr;
+  const bool coord = online->HASH() == nullptr;
   coord_addressed_last_ = coord;
   const source::Span span = span_of(online);
   auto& list = coord ? coord_list_ : motor_list_;

@@ -73,7 +73,6 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* selection = statement->switchStatement()) return out.push_back(lower_switch(selection));
   if (auto* label = statement->label()) return lower_label(label, out);
   if (auto* declaration = statement->declaration()) return lower_declaration(declaration, out);
-  if (auto* move = statement->move()) return lower_move(move, out);
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
   if (auto* code = statement->codeLine()) return not_supported(span_of(code), fmt::format("the code letter {}", text_of(code->start)));
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
@@ -150,8 +149,8 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
   if (statement->STOP()) return out.push_back(ir::make_stmt(span, ir::Stop{}));
   if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(lower_jump(statement));
   if (statement->CALL()) return out.push_back(lower_call(statement));
-  if (statement->DWELL()) return out.push_back(ir::make_stmt(span, ir::Dwell{lower_data(statement->data())}));
-  if (statement->DELAY()) return out.push_back(ir::make_stmt(span, ir::Delay{lower_data(statement->data())}));
+  if (statement->DWELL()) return out.push_back(ir::make_stmt(span, ir::Dwell{lower_data(statement->data(0))}));
+  if (statement->DELAY()) return out.push_back(ir::make_stmt(span, ir::Delay{lower_data(statement->data(0))}));
   if (statement->PSET()) return lower_pset(statement, out);
   if (statement->programControl()) return lower_program_control(statement->programControl(), out);
   const bool bias = statement->PCLR() || statement->PSTORE() || statement->PLOAD();

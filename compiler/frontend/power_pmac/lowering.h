@@ -65,6 +65,8 @@ class Lowering {
   void lower_start(P::ProgramControlContext* control, ir::Body& out);
   void lower_pset(P::SimpleStatementContext* statement, ir::Body& out);
   std::vector<ir::ExprPtr> lower_number_list(P::NumberListContext* list);
+  std::vector<ir::ExprPtr> lower_plc_list(P::PlcListContext* list);
+  void append_range(antlr4::Token* from, antlr4::Token* to, source::Span span, std::vector<ir::ExprPtr>& numbers);
   ir::ExprPtr lower_program_name(P::ProgramNameContext* name);
   void add_control(ir::ControlVerb verb, source::Span span, std::vector<ir::ExprPtr> arguments, ir::Body& out);
   std::string string_value(const antlr4::Token& token) const;

@@ -93,6 +93,9 @@ class Preprocessor {
 /// Tokens of a text; comments must have been blanked before. span: place of the text.
 std::vector<PreprocessorToken> split_tokens(std::string_view text, const source::Span& span);
 
+/// Index of the first token from `at` on that is no blank.
+std::size_t skip_blanks(const std::vector<PreprocessorToken>& line, std::size_t at);
+
 /// Value of a #if expression over tokens without macros (unknown identifiers are 0), or nullopt when it is malformed.
 std::optional<long long> evaluate_if(const std::vector<PreprocessorToken>& tokens);
 

@@ -41,7 +41,8 @@ std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names) {
   tree->expanded = std::move(expanded);
   tree->input = std::make_unique<antlr4::ANTLRInputStream>(as_ascii(tree->expanded.text()));
   tree->lexer = std::make_unique<WordLexer>(tree->input.get(), tree->expanded.text(), names);
-  tree->tokens = std::make_unique<antlr4::CommonTokenStream>(tree->lexer.get());
+  tree->source = run_token_pass(*tree->lexer);
+  tree->tokens = std::make_unique<antlr4::CommonTokenStream>(tree->source.get());
   tree->tokens->fill();
   return tree;
 }
@@ -50,7 +51,6 @@ std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, s
   auto tree = lex(std::move(expanded), names);
   if (!within_limits(*tree, diagnostics)) return tree;
   tree->parser = std::make_unique<grammar::PowerPmacParser>(tree->tokens.get());
-  tree->parser->inside_parentheses = &tree->inside_parentheses;
   tree->parser->removeErrorListeners();
   tree->parser->setErrorHandler(make_recovery(*tree, names, diagnostics));
   tree->parser->getInterpreter<antlr4::atn::ParserATNSimulator>()->setPredictionMode(antlr4::atn::PredictionMode::SLL);

@@ -17,15 +17,18 @@ struct SyntaxTree {
   ExpandedText expanded;
   std::unique_ptr<antlr4::ANTLRInputStream> input;
   std::unique_ptr<WordLexer> lexer;
+  std::unique_ptr<antlr4::TokenSource> source;  // the lexer's tokens after the token pass
   std::unique_ptr<antlr4::CommonTokenStream> tokens;
   std::unique_ptr<grammar::PowerPmacParser> parser;
-  std::vector<bool> inside_parentheses;  // by token index
   grammar::PowerPmacParser::FileContext* root = nullptr;  // null where a limit stopped the parse
 
   source::Span span_of(const antlr4::Token& token) const;
   source::Span span_of(const antlr4::ParserRuleContext& rule) const;
   std::string_view text_of(const antlr4::Token& token) const;
 };
+
+/// All tokens of the lexer, with what lines mean told by tokens: see token_pass.cpp.
+std::unique_ptr<antlr4::TokenSource> run_token_pass(WordLexer& lexer);
 
 /// Lexes without parsing, for --emit=tokens.
 std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names);

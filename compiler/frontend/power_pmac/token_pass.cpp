@@ -1,0 +1,194 @@
+// What lines mean, told to the parser by tokens. The lexer's tokens go through this pass once:
+//   - JOIN is put between the words of one motion line (ta25 F200 X5 Y6), so that a word on the next line begins a statement;
+//   - C, I and R become AXIS, VECTOR and RADIUS where they are words of a move and not variables, M and D become CODE likewise;
+//     what they are shows by the assignment operator behind their number;
+//   - the words of normal and pset get types of their own;
+//   - an operator that begins a line, outside parentheses and not after another operator, is no binary operator: & addresses a
+//     coordinate system, < > % are commands, everything else cannot stand there.
+#include "compiler/frontend/power_pmac/syntax_tree.h"
+
+namespace pmac::compiler::power_pmac {
+namespace {
+
+using T = grammar::PowerPmacParser;
+using Tokens = std::vector<std::unique_ptr<antlr4::Token>>;
+
+bool is_motion_keyword(std::size_t type) {
+  switch (type) {
+    case T::LINEAR: case T::RAPID: case T::CIRCLE: case T::PVT: case T::SPLINE: case T::TSEL: case T::CCR: case T::CCMODE: case T::TA: case T::TD: case T::TS:
+    case T::TSD: case T::TM: case T::LETTER_F: case T::ABS: case T::INC: case T::FRAX: case T::FRAX2: case T::NOFRAX: case T::NOFRAX2: case T::NORMAL: return true;
+    default: return false;
+  }
+}
+
+bool is_assignment(std::size_t type) { return type >= T::ASSIGN && type <= T::SYNC_DECREMENT; }
+bool is_step(std::size_t type) { return type >= T::INCREMENT && type <= T::SYNC_DECREMENT; }
+
+class TokenPass {
+ public:
+  explicit TokenPass(WordLexer& lexer) : lexer_(lexer) {
+    for (std::unique_ptr<antlr4::Token> token = lexer.nextToken();; token = lexer.nextToken()) {
+      const bool last = token->getType() == antlr4::Token::EOF;
+      in_.push_back(std::move(token));
+      if (last) return;
+    }
+  }
+
+  Tokens run() {
+    out_.reserve(in_.size() + in_.size() / 4);
+    for (at_ = 0; at_ < in_.size(); ++at_) {
+      take();
+      operand_wanted_ = wants_operand(in_type_);
+      before_ = in_type_;
+      before_line_ = in_[at_]->getLine();
+      out_.push_back(std::move(in_[at_]));
+    }
+    return std::move(out_);
+  }
+
+ private:
+  enum class Group { kNone, kMotion, kNormal, kMove, kPset };
+
+  void take() {
+    const std::size_t type = in_type_ = in_[at_]->getType();
+    const bool new_line = in_[at_]->getLine() != before_line_;
+    if (type == T::OPEN) in_buffer_ = true;
+    if (type == T::CLOSE) in_buffer_ = false;
+    if (type == T::SEMICOLON || type == T::LEFT_BRACE || type == T::RIGHT_BRACE || type == T::OPEN || type == T::CLOSE) depth_ = 0;
+    if (new_line && depth_ == 0) group_ = Group::kNone;
+    if (depth_ == 0) take_outside(type, new_line);
+    if (type == T::LEFT || type == T::LEFT_BRACKET) ++depth_;
+    if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && depth_ > 0) --depth_;
+  }
+
+  void take_outside(std::size_t type, bool new_line) {
+    const bool behind_operator = operand_wanted_;
+    if (new_line && !behind_operator && is_binary_operator(type)) return set_type(type_at_line_start(type));
+    if (!in_buffer_ || behind_operator) return;
+    if (is_move_word(type)) return take_move_word(type);
+    if (is_motion_keyword(type)) return take_motion_keyword(type);
+    if ((type == T::LETTER_M || type == T::LETTER_D) && !assignment_follows()) set_type(T::CODE);
+    if (type == T::PSET) group_ = Group::kPset;
+    else if (!is_part_of_word(type)) group_ = Group::kNone;
+  }
+
+  void take_move_word(std::size_t type) {
+    std::size_t kind = type;
+    if (type == T::LETTER_C) kind = T::AXIS;
+    if (type == T::LETTER_I) kind = T::VECTOR;
+    if (type == T::LETTER_R) kind = T::RADIUS;
+    if (group_ == Group::kNormal && kind == T::VECTOR) return set_type(T::NORMAL_VECTOR);
+    if (group_ == Group::kPset && kind == T::AXIS) return set_type(T::PSET_AXIS);
+    set_type(kind);
+    if (group_ == Group::kMotion || group_ == Group::kNormal || group_ == Group::kMove) put_join();
+    group_ = Group::kMove;
+  }
+
+  void take_motion_keyword(std::size_t type) {
+    if (group_ == Group::kMotion || group_ == Group::kNormal) put_join();
+    group_ = type == T::NORMAL ? Group::kNormal : Group::kMotion;
+  }
+
+  bool is_move_word(std::size_t type) const {
+    if (type == T::AXIS || type == T::VECTOR) return true;
+    return (type == T::LETTER_C || type == T::LETTER_I || type == T::LETTER_R) && !assignment_follows();
+  }
+
+  /// What stands inside a word: its number, sign, parentheses, and the : and ^ of a second number.
+  bool is_part_of_word(std::size_t type) const {
+    if (type == T::COLON) return group_ == Group::kMove;
+    return type == T::NUMBER || type == T::PLUS || type == T::MINUS || type == T::LEFT || type == T::RIGHT || type == caret();
+  }
+
+  /// The token behind `C 90` or `C(...)` assigns.
+  bool assignment_follows() const {
+    std::size_t next = at_ + 1;
+    const auto type = [&](std::size_t i) { return i < in_.size() ? in_[i]->getType() : antlr4::Token::EOF; };
+    if (type(next) == T::NUMBER) {
+      ++next;
+    } else if (type(next) == T::LEFT) {
+      int depth = 0;
+      do {
+        depth += type(next) == T::LEFT ? 1 : type(next) == T::RIGHT ? -1 : 0;
+      } while (next++ < in_.size() && depth > 0 && ends_not(type(next)));
+    } else {
+      return false;
+    }
+    return is_assignment(type(next));
+  }
+  static bool ends_not(std::size_t type) { return type != T::SEMICOLON && type != T::CLOSE && type != T::OPEN && type != antlr4::Token::EOF; }
+
+  /// Numbers of the operators that have no name in the grammar.
+  static std::size_t literal(std::string_view text) {
+    static const T parser(nullptr);
+    const auto& vocabulary = const_cast<T&>(parser).getVocabulary();
+    for (std::size_t type = 1; type < T::SEMICOLON; ++type)
+      if (vocabulary.getLiteralName(type) == "'" + std::string(text) + "'") return type;
+    return antlr4::Token::INVALID_TYPE;
+  }
+  static std::size_t caret() { static const std::size_t type = literal("^"); return type; }
+  static std::size_t percent() { static const std::size_t type = literal("%"); return type; }
+  static std::size_t less() { static const std::size_t type = literal("<"); return type; }
+  static std::size_t greater() { static const std::size_t type = literal(">"); return type; }
+  static bool is_one_of(std::size_t type, const std::vector<std::string_view>& texts) {
+    for (const std::string_view text : texts)
+      if (literal(text) == type) return true;
+    return false;
+  }
+  static std::vector<bool> make_binary() {
+    std::vector<bool> is_binary(T::SEMICOLON, false);
+    for (std::size_t type = 1; type < T::SEMICOLON; ++type)
+      is_binary[type] = is_one_of(type, {"/", "%", "|", "^", "<<", ">>", "!=", "<>", "<", ">", "<=", ">=", "!>", "!<", "~", "!~", "&&", "||"});
+    return is_binary;
+  }
+  static bool is_binary_operator(std::size_t type) {
+    static const std::vector<bool> is_binary = make_binary();
+    return type == T::PLUS || type == T::MINUS || type == T::STAR || type == T::AMPERSAND || (type < T::SEMICOLON && is_binary[type]);
+  }
+  /// Behind this token an operand must follow, so that a letter is a variable and a line end means nothing.
+  static bool is_operand_wanted(std::size_t type) {
+    static const std::size_t negation = literal("!");
+    return is_binary_operator(type) || (is_assignment(type) && !is_step(type)) || type == T::COMMA || type == T::LEFT || type == T::LEFT_BRACKET || type == negation;
+  }
+
+  /// Behind the token at hand an operand must follow. The signs of jog+ and lh<, and the * that stands for a position, are none.
+  bool wants_operand(std::size_t type) const {
+    if (before_ == T::JOG || before_ == T::ON_J) return is_assignment(type) || type == T::LEFT;
+    if (before_ == T::LH) return false;
+    if (type == T::STAR) return !operand_wanted_ && before_ != T::ARROW && before_ != T::COLON && before_ != T::HASH && before_ != T::AMPERSAND && before_ != T::COORD;
+    return is_operand_wanted(type);
+  }
+
+  std::size_t type_at_line_start(std::size_t type) const {
+    if (in_buffer_) return T::OTHER;
+    if (type == T::AMPERSAND) return T::COORD;
+    if (type == percent()) return T::LINE_PERCENT;
+    return type == less() || type == greater() ? T::COMMAND : T::OTHER;
+  }
+
+  void set_type(std::size_t type) { static_cast<antlr4::CommonToken*>(in_[at_].get())->setType(type); }
+
+  /// An empty token of type JOIN before the one at hand.
+  void put_join() {
+    auto join = std::make_unique<antlr4::CommonToken>(in_[at_].get());
+    join->setType(T::JOIN);
+    out_.push_back(std::move(join));
+  }
+
+  WordLexer& lexer_;
+  Tokens in_, out_;
+  std::size_t at_ = 0;
+  std::size_t in_type_ = 0;      // type that the lexer gave to the token at hand
+  std::size_t before_ = T::SEMICOLON;
+  std::size_t before_line_ = 0;
+  int depth_ = 0;
+  bool operand_wanted_ = false;
+  bool in_buffer_ = false;
+  Group group_ = Group::kNone;
+};
+
+}  // namespace
+
+std::unique_ptr<antlr4::TokenSource> run_token_pass(WordLexer& lexer) { return std::make_unique<antlr4::ListTokenSource>(TokenPass(lexer).run()); }
+
+}  // namespace pmac::compiler::power_pmac
