@@ -131,7 +131,7 @@ class MachineHost : public Host {
   void log_output(Thread& thread, int number, const PointerEntry& pointer) {
     if (Runner::of(thread).kind == RunnerKind::kOnline || !s_.options.observers.output) return;
     const std::string name = pointer.definition.name.empty() ? fmt::format("M{}", number) : pointer.definition.name;
-    s_.options.observers.output({s_.now_ms, name, s_.io.read(pointer.definition), thread.source()});
+    s_.options.observers.output({s_.now_ms, name, s_.io.read(pointer.definition), s_.assignment_source.value_or(thread.source())});
   }
 
   Flow enable_gathering(Thread& thread, double value);
@@ -270,6 +270,7 @@ std::unique_ptr<Host> make_host(Machine::State& state) { return std::make_unique
 void Machine::State::perform(const SyncEntry& entry, CoordSystem& from) {
   Thread& thread = const_cast<Runner&>(from.runner()).thread;
   const auto number = static_cast<std::size_t>(entry.target.number);
+  assignment_source = entry.source;
   const auto with = [&](double current) { return bytecode::apply_assignment(entry.target.op, current, entry.value); };
   switch (entry.target.variable_class) {
     case VariableClass::kP: p[number] = with(p[number]); break;
@@ -279,6 +280,7 @@ void Machine::State::perform(const SyncEntry& entry, CoordSystem& from) {
     case VariableClass::kElement: host->write_element(thread, entry.element, with(host->read_element(thread, entry.element))); break;
     default: break;  // L, R, C, D are refused by the compiler as synchronous targets
   }
+  assignment_source.reset();
 }
 
 }  // namespace pmac::runtime

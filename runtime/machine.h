@@ -72,7 +72,6 @@ struct MachineObservers {
 struct MachineOptions {
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
-  bool limit_jerk = false;
   OnlineCompiler compile_online;                              // cmd "...", --at, console
   MachineObservers observers;
   std::uint64_t max_instructions = 20'000'000'000;            // of a whole run

@@ -50,6 +50,12 @@ struct Motor {
     position_mu = at_mu;
     velocity_mu_ms = 0;
   }
+  /// homez: home is where the motor stands.
+  void home_here(double time_ms) {
+    home_position_mu += position_at(time_ms);
+    rest(time_ms, 0);
+    home_complete = true;
+  }
   /// A profile that has ended by time_ms becomes rest at its own end.
   void settle(double time_ms) {
     if (source == Source::kProfile && profile.end_ms() <= time_ms) rest(profile.end_ms(), profile.target_mu());

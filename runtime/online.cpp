@@ -34,6 +34,11 @@ int number_or(const Call& call, int addressed, int limit, const char* what) {
   return -1;
 }
 
+Flow not_simulated(const Call& call) {
+  call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
+  return Flow::kContinue;
+}
+
 int own_coord(const Call& call) {
   const Runner& r = call.runner;
   return r.kind == RunnerKind::kMotionProgram || r.kind == RunnerKind::kKinematics ? r.number : r.thread.coord;
@@ -102,9 +107,7 @@ Flow coord_verb(const Call& call) {
       call.s.answer(text);
       return Flow::kContinue;
     }
-    default:
-      call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
-      return Flow::kContinue;
+    default: return not_simulated(call);
   }
 }
 
@@ -145,14 +148,6 @@ bool may_jog(const Call& call, const Motor& m) {
   return call.refusal.empty();
 }
 
-void home_zero(const Call& call, Motor& m) {
-  const double at = m.position_at(call.s.now_ms);
-  m.home_position_mu += at;
-  m.rest(call.s.now_ms, 0);
-  m.position_mu = 0;
-  m.home_complete = true;
-}
-
 void kill(const Call& call, Motor& m) {
   if (m.coord >= 0 && call.s.coord(m.coord).program_running()) call.s.coord(m.coord).abort(call.s.now_ms);
   m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
@@ -173,6 +168,9 @@ Flow motor_verb(const Call& call) {
     default: break;
   }
   if (call.verb == ControlVerb::kJogStop && !m.closed_loop) m.closed_loop = m.amplifier_enabled = true;  // j/ closes the loop
+  const bool own_program = call.runner.kind == RunnerKind::kMotionProgram && m.coord == call.runner.number;
+  if (call.verb == ControlVerb::kHomeZero && own_program) return call.s.coord(m.coord).home_zero(call.runner.thread, number);
+  if (call.verb == ControlVerb::kHome) return not_simulated(call);
   if (!may_jog(call, m)) return Flow::kContinue;
   const double value = std::isnan(call.argument(1)) ? call.s.elements.get(ElementId::kMotorProgJogPos, static_cast<unsigned>(number))
                                                     : call.argument(1);
@@ -187,8 +185,8 @@ Flow motor_verb(const Call& call) {
     case ControlVerb::kJogBy:
     case ControlVerb::kJogByActual: jog_to(call, m, m.position_at(now) + value); break;
     case ControlVerb::kJogReturn: jog_to(call, m, m.prejog_mu); break;
-    case ControlVerb::kHomeZero: home_zero(call, m); break;
-    default: call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
+    case ControlVerb::kHomeZero: m.home_here(now); break;
+    default: return not_simulated(call);
   }
   return Flow::kContinue;
 }
@@ -217,7 +215,7 @@ Flow plc_verb(const Call& call) {
     case ControlVerb::kDisablePlc: plc.active = plc.running = false; break;
     case ControlVerb::kPausePlc: plc.running = false; break;
     case ControlVerb::kResumePlc: plc.running = plc.active; break;
-    default: call.refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(call.verb));
+    default: return not_simulated(call);
   }
   return Flow::kContinue;
 }
@@ -235,10 +233,7 @@ Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::s
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);
-  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) {
-    refusal = fmt::format("error #20: ILLEGAL CMD: {} is not simulated", control_verb_name(verb));
-    return Flow::kContinue;
-  }
+  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) return not_simulated(call);
   return coord_verb(call);
 }
 

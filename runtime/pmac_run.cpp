@@ -39,7 +39,8 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.answer = [quiet = options.quiet, answers_to_stderr](const std::string& text) {
     if (!quiet) std::fprintf(answers_to_stderr ? stderr : stdout, "%s\n", text.c_str());
   };
-  o.refused = [](const std::string& text, const std::string& reason) {
+  o.refused = [&report](const std::string& text, const std::string& reason) {
+    report.add_refusal(text, reason);
     std::fprintf(stderr, "refused: %s: %s\n", text.c_str(), reason.c_str());
   };
   o.warning = [&machine](bytecode::SourceLine source, const std::string& text) {
@@ -99,7 +100,6 @@ int run(const RunOptions& options) {
   runtime::MachineOptions machine_options;
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
-  machine_options.limit_jerk = options.limit_jerk;
   machine_options.max_instructions = options.max_instructions;
   machine_options.compile_online = online_compiler(session);
   machine_options.observers = observers(options, report, place);
@@ -125,6 +125,9 @@ int run(const RunOptions& options) {
   if (shows_progress(options)) std::fprintf(stderr, "\r                              \r");
   recorder.finish();
   explain_end(options, outcome);
+  const bool idle_from_start = outcome.end == runtime::RunEnd::kIdle && report.move_count() == 0 && outcome.time_ms < 11;
+  if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.quiet && exit_code(machine, outcome) == kExitOk)
+    std::fprintf(stderr, "pmac-run: loaded, and nothing was started; use -e '&1 b1r' to run program 1 in coordinate system 1\n");
   const bool written = outputs.finish();
   if (options.stats) {
     std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() ? stdout : stderr;

@@ -72,6 +72,7 @@ struct Machine::State {
   std::uint64_t instructions = 0;
   std::uint64_t random_state = 0x9e3779b97f4a7c15ull;
   bool any_fault = false, any_refused = false;
+  std::optional<bytecode::SourceLine> assignment_source;  // of the synchronous assignment that is being performed
   std::set<std::pair<std::int32_t, std::int32_t>> warned;   // file and line
   double idle_since_ms = 0;
   bool is_idle = true;

@@ -82,6 +82,8 @@ std::string CoordSystem::run(double time_ms) {
     if (m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
   }
   if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
+  if (motor_map().motors.empty())
+    machine_.warn(pointed_.program->source, fmt::format("coordinate system {} has no motors; the program runs dry", number_));
   if (!runner_.thread.begin(pointed_, pointed_label_))
     return fmt::format("error #35: INVALID LABEL: program {} has no label N{}", pointed_.program->number, pointed_label_);
   runner_.thread.coord = number_;

@@ -64,6 +64,8 @@ class CoordSystem {
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
   void stop_program_from_inside() { stop_requested_ = true; }
+  /// homez in the program: comes to rest, then the motor's position becomes 0.
+  Flow home_zero(Thread& thread, int motor);
 
   // --- time ---------------------------------------------------------------------------------------------------------------
   /// Next time at which service() has something to do; kNever if none.
@@ -89,7 +91,7 @@ class CoordSystem {
 
  private:
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid };
-  enum class AfterRest { kContinue, kDwell, kRapid, kNextInterrupt, kEnd };
+  enum class AfterRest { kDwell, kRapid, kHomeZero, kNextInterrupt, kEnd };
 
   // program.cpp
   void calculate(double time_ms);
@@ -129,7 +131,7 @@ class CoordSystem {
   std::int64_t pointed_label_ = -1;
 
   Phase phase_ = Phase::kIdle;
-  AfterRest after_rest_ = AfterRest::kContinue;
+  AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
   bool stop_requested_ = false;
 
@@ -141,6 +143,7 @@ class CoordSystem {
   AxisVector calculated_uu_{};
   OpenBlock block_;
   double dwell_ms_ = 0;
+  int home_motor_ = -1;
   bytecode::SourceLine item_source_;
   AxisVector rapid_target_uu_{};
   double item_start_ms_ = 0;

@@ -96,6 +96,11 @@ Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
   return Flow::kSuspend;
 }
 
+Flow CoordSystem::home_zero(Thread& thread, int motor) {
+  home_motor_ = motor;
+  return stop_item(thread, AfterRest::kHomeZero);
+}
+
 Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command) {
   const auto cs = static_cast<unsigned>(number_);
   ensure_sequence(machine_.now_ms);
@@ -136,7 +141,6 @@ motion::PipelineConfig CoordSystem::config() {
   c.ramp_rule = machine_.options.ramp_rule;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
   c.lookahead = c.segment_time_ms > 0 && c.lookahead_segments > 1 && lookahead_buffer > 0;
-  c.limit_jerk = machine_.options.limit_jerk;
   c.radius_error_limit_uu = e.get(ElementId::kCoordRadiusErrorLimit, cs);
   c.min_arc_len = e.get(ElementId::kCoordMinArcLen, cs);
   c.max_circle_accel = e.get(ElementId::kCoordMaxCirAccel, cs);
@@ -250,7 +254,12 @@ std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
 void CoordSystem::at_rest(double time_ms) {
   settle_path(time_ms);
   switch (after_rest_) {
-    case AfterRest::kContinue: calculate(time_ms); break;
+    case AfterRest::kHomeZero:
+      machine_.motors[static_cast<std::size_t>(home_motor_)].home_here(time_ms);
+      if (const std::string refusal = match_positions(time_ms); !refusal.empty())
+        return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
+      calculate(time_ms);
+      break;
     case AfterRest::kDwell: start_dwell(time_ms); break;
     case AfterRest::kRapid: start_rapid(time_ms); break;
     case AfterRest::kNextInterrupt:
@@ -267,6 +276,7 @@ void CoordSystem::settle_path(double time_ms) {
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
   pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
+  if (!map_.has_inverse_motors()) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
   for (std::size_t i = 0; i < position.size(); ++i)
     machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].rest(pipeline_.end_ms(), position[i]);
   on_path_ = false;
@@ -294,22 +304,22 @@ void CoordSystem::start_rapid(double time_ms) {
   perform_up_to(next_id_++);
   const ElementStore& e = machine_.elements;
   const bool equal_times = e.get(ElementId::kCoordRapidVelCtrl, static_cast<unsigned>(number_)) != 0;
-  double longest_ms = 0;
+  double longest_ms = 0, longest_cruise_ms = 0;
   std::vector<motion::JogParameters> parameters;
   for (std::size_t i = 0; i < map.motors.size(); ++i) {
     const auto n = static_cast<unsigned>(map.motors[i]);
     const bool at_max = e.get(ElementId::kMotorRapidSpeedSel, n) != 0;
     parameters.push_back({e.get(at_max ? ElementId::kMotorMaxSpeed : ElementId::kMotorJogSpeed, n), e.get(ElementId::kMotorJogTa, n),
                           e.get(ElementId::kMotorJogTs, n)});
-    const double distance = target[i] - machine_.motors[n].position_at(time_ms);
-    longest_ms = std::max(longest_ms, motion::move_time_ms(distance, parameters[i]));
+    longest_cruise_ms = std::max(longest_cruise_ms, std::abs(target[i] - machine_.motors[n].position_at(time_ms)) / parameters[i].speed_mu_ms);
   }
   for (std::size_t i = 0; i < map.motors.size(); ++i) {
     Motor& m = machine_.motors[static_cast<std::size_t>(map.motors[i])];
     const double from = m.position_at(time_ms);
     if (from == target[i]) continue;
-    m.follow(equal_times ? motion::MotorProfile::move_in_time(time_ms, from, target[i], longest_ms, parameters[i])
-                         : motion::MotorProfile::move(time_ms, from, 0, target[i], parameters[i]));
+    if (equal_times) parameters[i].speed_mu_ms = std::abs(target[i] - from) / longest_cruise_ms;  // the same D/V for all
+    m.follow(motion::MotorProfile::move(time_ms, from, 0, target[i], parameters[i]));
+    longest_ms = std::max(longest_ms, m.profile.end_ms() - time_ms);
   }
   double length2 = 0;
   for (std::size_t axis = 0; axis < rapid_target_uu_.size(); ++axis)
@@ -324,8 +334,13 @@ void CoordSystem::start_rapid(double time_ms) {
 void CoordSystem::sample(double start_ms, double period_ms, int count, std::span<double> position_mu) {
   pipeline_.sample(start_ms, period_ms, count, position_mu, {});
   sampled_to_ms_ = start_ms + (count - 1) * period_ms;
-  for (std::size_t i = 0; i < path_map_.motors.size(); ++i)
-    machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].position_mu = position_mu[(i + 1) * static_cast<std::size_t>(count) - 1];
+  for (std::size_t i = 0; i < path_map_.motors.size(); ++i) {
+    Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
+    const std::size_t last = (i + 1) * static_cast<std::size_t>(count) - 1;
+    const double before_mu = count > 1 ? position_mu[last - 1] : m.position_mu;
+    m.velocity_mu_ms = (position_mu[last] - before_mu) / period_ms;  // as the controller's DesVel: over the last servo cycle
+    m.position_mu = position_mu[last];
+  }
 }
 
 // --- records and synchronous assignments ----------------------------------------------------------------------------------

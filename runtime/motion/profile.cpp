@@ -71,18 +71,16 @@ double bisect(double low, double high, const Function& function) {
   return low;
 }
 
-/// Peak speed (signed) of the move over distance_mu from the start.
+/// Peak speed (signed) of the move over distance_mu from the start. A peak toward minus is the mirrored problem.
 double peak_speed(const Start& start, double distance_mu, const JogParameters& jog) {
   const double stop_distance = distance_to_speed(start, 0, jog);
+  if (distance_mu < stop_distance) return -peak_speed({-start.speed, -start.accel, start.jerk}, -distance_mu, jog);
   const auto missing = [&](double peak) { return distance_over_peak(start, peak, jog) - distance_mu; };
   const double limit = jog.speed_mu_ms;
   const double settled = start.settled_speed();
-  if (distance_mu >= stop_distance) {
-    if (missing(limit) <= 0) return limit;
-    const bool faster_helps = settled > 0 && settled < limit && missing(settled) <= 0;
-    return bisect(faster_helps ? settled : 0, limit, missing);
-  }
-  return missing(-limit) >= 0 ? -limit : bisect(-limit, 0, missing);
+  if (missing(limit) <= 0) return limit;
+  const bool faster_helps = settled > 0 && settled < limit && missing(settled) <= 0;
+  return bisect(faster_helps ? settled : 0, limit, missing);
 }
 
 /// Peak of a rest-to-rest move that never reaches the jog speed, |distance| > 0; closed forms for times and rates.
@@ -211,16 +209,6 @@ MotorProfile MotorProfile::stop(double start_ms, double position_mu, double velo
   if (velocity_mu_ms != 0) builder.ramp_from(start, 0, jog);
   const double target_mu = velocity_mu_ms != 0 ? position_mu + distance_to_speed(start, 0, jog) : position_mu;
   return builder.rest_at(target_mu);
-}
-
-MotorProfile MotorProfile::move_in_time(double start_ms, double position_mu, double target_mu, double duration_ms,
-                                        const JogParameters& jog) {
-  const double distance = target_mu - position_mu;
-  if (distance == 0) return ProfileBuilder(start_ms, position_mu, 0).rest_at(target_mu);
-  const double fastest = peak_speed({}, std::abs(distance), jog);
-  const auto too_early = [&](double speed) { return duration_ms - std::abs(distance) / speed - ramp_time_ms(speed, jog); };
-  const double peak = too_early(fastest) <= 0 ? fastest : bisect(0, fastest, too_early);
-  return move_over_peak(start_ms, position_mu, {}, target_mu, std::copysign(peak, distance), jog);
 }
 
 int MotorProfile::piece_at(double time_ms) const {

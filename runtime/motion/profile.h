@@ -26,9 +26,6 @@ class MotorProfile {
                           double accel_mu_ms2 = 0);
   /// Ramps to rest as soon as the parameters allow.
   static MotorProfile stop(double start_ms, double position_mu, double velocity_mu_ms, const JogParameters&, double accel_mu_ms2 = 0);
-  /// The same rest-to-rest move stretched so that it takes duration_ms (>= its own); for RapidVelCtrl.
-  /// The cruise speed is lowered to |distance| / (duration - ramp time).
-  static MotorProfile move_in_time(double start_ms, double position_mu, double target_mu, double duration_ms, const JogParameters&);
 
   double position_mu(double time_ms) const;
   double velocity_mu_ms(double time_ms) const;

@@ -24,7 +24,7 @@ struct RunOptions {
   std::string record, gather;
   std::vector<std::string> plots;
   std::string emit;
-  bool stats = false, check_limits = false, limit_jerk = false, quiet = false;
+  bool stats = false, quiet = false;
   JsonDetail json = JsonDetail::kNone;
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;

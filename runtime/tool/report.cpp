@@ -82,7 +82,9 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
   }
   j["faults"] = ordered_json::array();
   for (const auto& fault : faults_) j["faults"].push_back(fault_json(machine, fault));
-  return j.dump(1) + "\n";
+  j["refused"] = ordered_json::array();
+  for (const auto& [command, reason] : refusals_) j["refused"].push_back({{"command", command}, {"text", reason}});
+  return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string Report::text(const runtime::Machine& machine, const runtime::RunOutcome& outcome,

@@ -19,6 +19,7 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+  void add_refusal(const std::string& command, const std::string& reason) { refusals_.emplace_back(command, reason); }
 
   /// Moves in order of their start. The object of --json; see docs/pmac-run.md for its keys.
   std::string json(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
@@ -28,7 +29,7 @@ class Report {
                    double wall_s) const;
   /// The log of output changes, a line each.
   std::string output_log(const runtime::Machine& machine) const;
-  const std::vector<runtime::FaultRecord>& faults() const { return faults_; }
+  std::size_t move_count() const { return move_count_; }
 
  private:
   bool keep_moves_;
@@ -36,6 +37,7 @@ class Report {
   std::vector<runtime::MoveRecord> moves_;
   std::vector<runtime::OutputChange> outputs_;
   std::vector<runtime::FaultRecord> faults_;
+  std::vector<std::pair<std::string, std::string>> refusals_;   // command, reason
 };
 
 /// "idle", "until", "fault", "time-limit" or "budget".

@@ -21,6 +21,17 @@ TEST_CASE("a jog that is renewed every millisecond settles at the speed whose st
   CHECK(p.velocity_mu_ms(599) >= with_delay);
 }
 
+TEST_CASE("mirrored destinations give mirrored motion", "[motion]") {
+  const JogParameters jog{32, -10, -50};
+  MotorProfile plus = MotorProfile::rest(0), minus = MotorProfile::rest(0);
+  for (int k = 0; k < 400; ++k) {
+    const double t = k, d = k < 300 ? 500 : -80;
+    plus = MotorProfile::move(t, plus.position_mu(t), plus.velocity_mu_ms(t), plus.position_mu(t) + d, jog, plus.accel_mu_ms2(t));
+    minus = MotorProfile::move(t, minus.position_mu(t), minus.velocity_mu_ms(t), minus.position_mu(t) - d, jog, minus.accel_mu_ms2(t));
+    REQUIRE(plus.position_mu(t + 1) == Approx(-minus.position_mu(t + 1)).margin(1e-9));
+  }
+}
+
 TEST_CASE("random new destinations keep position, speed, acceleration and the limits", "[motion]") {
   const JogParameters jog{32, -10, -50};  // 0.1 mu/ms^2, 0.02 mu/ms^3
   std::mt19937_64 random(1);

@@ -88,12 +88,3 @@ TEST_CASE("a jog goes on until it is stopped", "[motion][profile]") {
   CHECK(stop.velocity_mu_ms(1400) == 0);
   CHECK(MotorProfile::rest(7).position_mu(1e9) == 7);
 }
-
-TEST_CASE("a move stretched to a time takes that time", "[motion][profile]") {
-  for (const double duration : {1575.0, 2000.0, 9000.0}) {
-    const MotorProfile profile = MotorProfile::move_in_time(0, 0, 40000, duration, kFactory);
-    CHECK(profile.end_ms() == Approx(duration).epsilon(1e-9));
-    CHECK(profile.position_mu(duration + 1) == 40000);
-    CHECK(measure(profile, 0).position_gap < 1e-5);
-  }
-}
