@@ -129,6 +129,10 @@ int run(const Arguments& arguments) {
   if (!arguments.emit.empty()) return emit(session, arguments, files);
   const auto module = session.compile(files);
   if (report(session, arguments) || !module) return kUserError;
+  for (const std::string& file : arguments.files) {
+    std::error_code ignored;
+    if (!arguments.output.empty() && std::filesystem::equivalent(file, arguments.output, ignored)) throw UsageError{arguments.output + " is a source file; choose another name for the object file"};
+  }
   if (!arguments.output.empty() && !arguments.check) write_file(arguments.output, bytecode::save(*module));
   return kOk;
 }

@@ -151,6 +151,12 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     s_.refuse(element_text(a), "error #70: " + text);
     return Flow::kContinue;
   }
+  if (info.access == ElementAccess::kSaved && !std::isfinite(value)) {
+    const std::string text = fmt::format("{} cannot be set to {}", element_text(a), std::isnan(value) ? "nan" : "an infinite value");
+    if (runner.kind != RunnerKind::kOnline) return fault(thread, FaultKind::kRunTime, text);
+    s_.refuse(element_text(a), "error #23: OUT OF RANGE NUMBER: " + text);
+    return Flow::kContinue;
+  }
   double rti = static_cast<double>(s_.rti_cycles - 1);
   switch (a.id) {
     case ElementId::kSysServoPeriod:

@@ -142,6 +142,10 @@ void jog_endless(const Call& call, Motor& m, int direction) {
 }
 
 bool may_jog(const Call& call, const Motor& m) {
+  if (!(jog_parameters(call.s, m.number).speed_mu_ms > 0)) {
+    call.refusal = fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].JogSpeed is not above 0", m.number);
+    return false;
+  }
   if (!m.closed_loop) call.refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", m.number);
   else if (m.coord >= 0 && call.s.coord(m.coord).program_running())
     call.refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}, which executes a program", m.number, m.coord);

@@ -27,7 +27,6 @@ void interrupt(int) { g_interrupted = true; }
 void catch_signals() {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
-  std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool shows_progress(const RunOptions& options) { return !options.quiet && isatty(STDERR_FILENO) != 0; }
@@ -119,6 +118,7 @@ int run(const RunOptions& options) {
   for (const std::string& text : options.commands) machine.command(text, "-e");
   for (const auto& [time_s, text] : options.timed_commands) machine.at(time_s * 1000.0, text);
 
+  catch_signals();
   const auto wall_start = std::chrono::steady_clock::now();
   const runtime::RunOutcome outcome = machine.run(limits(options));
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
@@ -152,7 +152,11 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
       return kExitUsage;
     }
-    catch_signals();
+    if (const std::string file = clashing_file(options); !file.empty()) {
+      std::fprintf(stderr, "pmac-run: %s is an output and something else as well; choose another name\n", file.c_str());
+      return kExitUsage;
+    }
+    std::signal(SIGPIPE, SIG_IGN);
     return run(options);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "pmac-run: internal error: %s\n", e.what());

@@ -187,6 +187,8 @@ void Binder::bind(ir::Call& node, const source::Span& span) {
   node.subprogram = static_cast<std::int64_t>(whole);
   const auto label = static_cast<std::int64_t>(std::llround((*constant - whole) * 1e6));
   node.label = label > 0 ? label : -1;
+  const std::vector<ir::Parameter>* parameters = label > 0 ? nullptr : project_.names.parameters_of(node.subprogram);
+  if (parameters && !parameters->empty()) mark_references(node.by_reference, node.arguments, *parameters, span, fmt::format("subprog {}", node.subprogram));
 }
 
 void Binder::bind_named_call(ir::Call& node, const source::Span& span) {

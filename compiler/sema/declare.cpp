@@ -38,6 +38,7 @@ class Declarer {
 
   void declare_buffer(ir::Buffer& buffer) {
     const bool is_named_kind = buffer.kind == ProgramKind::kProg || buffer.kind == ProgramKind::kPlc || buffer.kind == ProgramKind::kSubprog;
+    if (buffer.name.empty() && buffer.kind == ProgramKind::kSubprog) project_.names.declare_numbered(buffer.number, buffer.parameters);
     if (buffer.name.empty() || !is_named_kind) return;
     const auto number = project_.names.declare_program(buffer.name, symbol_kind(buffer.kind), buffer.span);
     if (!number) diagnostics_.error("PM3020", buffer.span, fmt::format("no program number is left for '{}'", buffer.name));

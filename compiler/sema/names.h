@@ -45,6 +45,12 @@ class NameTable {
   std::optional<std::int64_t> declare_program(const std::string& name, bytecode::SymbolKind kind, source::Span span);
   void use_plc_number(std::int64_t number) { plcs_in_use_.insert(number); }
   std::int64_t next_routine_label() { return next_routine_label_++; }
+  /// Parameters of a subprogram that has a number and no name.
+  void declare_numbered(std::int64_t number, std::vector<ir::Parameter> parameters) { numbered_[number] = std::move(parameters); }
+  const std::vector<ir::Parameter>* parameters_of(std::int64_t number) const {
+    const auto known = numbered_.find(number);
+    return known == numbered_.end() ? nullptr : &known->second;
+  }
   /// Takes a name of an object file over.
   void adopt(const bytecode::Symbol& symbol);
 
@@ -58,6 +64,7 @@ class NameTable {
 
   std::map<std::string, Name, std::less<>> names_;
   std::vector<std::string> order_;
+  std::map<std::int64_t, std::vector<ir::Parameter>> numbered_;
   std::set<std::int64_t> plcs_in_use_;
   std::int64_t next_global_ = kFirstGlobal, next_csglobal_ = kFirstCsGlobal, next_pointer_ = kFirstPointer;
   std::int64_t next_prog_ = kFirstNamedProgram, next_subprog_ = kFirstNamedProgram, next_plc_ = 1;

@@ -139,7 +139,9 @@ class CoordSystem {
   motion::MotorMap path_map_;
   motion::StageObservers observers_;
   bool on_path_ = false, lookahead_ = false;
-  double sampled_to_ms_ = 0;
+  double sampled_to_ms_ = 0, sequence_start_ms_ = 0;
+  double calculated_at_ms_ = -kNever;  // last calculation pass
+  int moves_without_time_ = 0;
   AxisVector calculated_uu_{};
   OpenBlock block_;
   double dwell_ms_ = 0;

@@ -84,7 +84,7 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
     if (block.axes >> axis & 1u && !std::isfinite(block.value[axis]))
       return Fault{FaultKind::kBadTarget, source,
                    fmt::format("the target of axis {} is {}, not a finite number; check for a division by zero",
-                               bytecode::axis_name(axis), block.value[axis])};
+                               bytecode::axis_name(axis), std::isnan(block.value[axis]) ? "nan" : "infinite")};
   for (int word = 0; word < 6; ++word)
     if (block.center_words >> word & 1u && !std::isfinite(block.center[word]))
       return Fault{FaultKind::kBadTarget, source, "a centre word (I, J, K) is not a finite number"};

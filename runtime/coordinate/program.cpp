@@ -17,6 +17,7 @@ using bytecode::MoveMode;
 using bytecode::Opcode;
 
 constexpr std::uint64_t kPassBudget = 1'000'000;  // instructions of one calculation pass
+constexpr int kMaxMovesWithoutTime = 1'000'000;   // moves of no duration in a row
 constexpr int kMaxStepsAtOneTime = 10'000;        // dwells of no length and the like, before time has to go on
 
 }  // namespace
@@ -109,12 +110,15 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   machine_.elements.set(ElementId::kCoordOnceNoBlend, 0, cs);
   if (machine_.options.observers.motion_command) machine_.options.observers.motion_command(number_, command);
   if (auto fault = pipeline_.add(command)) return give_up(thread, *fault);
+  if (++moves_without_time_ > kMaxMovesWithoutTime)
+    return give_up(thread, {FaultKind::kRunTime, command.source, fmt::format("{} moves in a row took no time; the program does not come on", kMaxMovesWithoutTime)});
   ++next_id_;
   calculated_uu_ = pipeline_.calculated_position();
   const bool delay = command.kind == motion::CommandKind::kDelay;
   pending_moves_.push_back({command.id, delay ? "delay" : move_mode_name(modal.mode), command.source});
   collect_timings();
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
+  moves_without_time_ = 0;
   resume_ms_ = next_calculation_ms(machine_.now_ms);
   return Flow::kSuspend;
 }
@@ -127,7 +131,7 @@ void CoordSystem::ensure_sequence(double time_ms) {
   lookahead_ = set_up.lookahead;
   pipeline_.reset(set_up, calculated_uu_, time_ms);
   on_path_ = true;
-  sampled_to_ms_ = time_ms;
+  sampled_to_ms_ = sequence_start_ms_ = time_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
 }
 
@@ -214,6 +218,7 @@ void CoordSystem::calculate(double time_ms) {
       return;
     }
   }
+  calculated_at_ms_ = time_ms;
   const auto go_back = static_cast<std::int64_t>(machine_.elements.get(ElementId::kCoordGoBack, static_cast<unsigned>(number_)));
   RunResult result = runner_.thread.run(*machine_.host, kPassBudget, std::max<std::int64_t>(go_back, 0) + 2);
   machine_.instructions += result.instructions;
@@ -264,7 +269,7 @@ void CoordSystem::at_rest(double time_ms) {
     case AfterRest::kRapid: start_rapid(time_ms); break;
     case AfterRest::kNextInterrupt:
       phase_ = Phase::kCalculating;
-      resume_ms_ = machine_.rti_at_or_after_ms(time_ms);
+      resume_ms_ = std::max(machine_.rti_at_or_after_ms(time_ms), machine_.next_rti_ms(calculated_at_ms_));
       break;
     case AfterRest::kEnd: finish_program(); break;
   }
@@ -272,6 +277,7 @@ void CoordSystem::at_rest(double time_ms) {
 
 void CoordSystem::settle_path(double time_ms) {
   if (!on_path_) return;
+  if (pipeline_.end_ms() > sequence_start_ms_) moves_without_time_ = 0;
   collect_timings();
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
@@ -311,6 +317,9 @@ void CoordSystem::start_rapid(double time_ms) {
     const bool at_max = e.get(ElementId::kMotorRapidSpeedSel, n) != 0;
     parameters.push_back({e.get(at_max ? ElementId::kMotorMaxSpeed : ElementId::kMotorJogSpeed, n), e.get(ElementId::kMotorJogTa, n),
                           e.get(ElementId::kMotorJogTs, n)});
+    if (!(parameters[i].speed_mu_ms > 0))
+      return fail(time_ms, {FaultKind::kBadTarget, item_source_,
+                            fmt::format("Motor[{}].{} is not above 0; a rapid move needs a speed", n, at_max ? "MaxSpeed" : "JogSpeed")});
     longest_cruise_ms = std::max(longest_cruise_ms, std::abs(target[i] - machine_.motors[n].position_at(time_ms)) / parameters[i].speed_mu_ms);
   }
   for (std::size_t i = 0; i < map.motors.size(); ++i) {

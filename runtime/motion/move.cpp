@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "runtime/motion/axis_vector.h"
 #include "runtime/motion/circle.h"
 
 namespace pmac::motion {
 namespace {
+
+constexpr int kMaxSegmentsOfMove = 1'000'000;  // a move is segmented as a whole
 
 using runtime::Fault;
 using runtime::FaultKind;
@@ -177,6 +181,10 @@ Result<Move> make_move(const MotionCommand& command, const AxisVector& start, co
   move.time_ms = std::max(programmed_ms, time_for_max_speed_ms(move, context.config));
   move.time_ms = time_with_room_for_ramps(move, move.time_ms, context.config);
   if (!std::isfinite(move.time_ms)) return Fault{FaultKind::kBadTarget, command.source, "the move would take for ever"};
+  if (context.config.segment_time_ms > 0 && move.time_ms / context.config.segment_time_ms > kMaxSegmentsOfMove)
+    return Fault{FaultKind::kBadTarget, command.source,
+                 fmt::format("the move takes {:.0f} s, more than {} segments of {} ms; divide it or raise SegMoveTime", move.time_ms / 1000,
+                             kMaxSegmentsOfMove, context.config.segment_time_ms)};
   if (move.time_ms == 0 && move.curve->moved != 0)
     return Fault{FaultKind::kBadTarget, command.source, "the move takes no time; set tm, ta or a feed rate"};
   move.stop_ramp = own_ramp(move, move.time_ms, true, context.config);

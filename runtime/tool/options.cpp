@@ -14,7 +14,7 @@ constexpr const char* kFooter = R"(Examples:
   pmac-run moves.pmc -e '&1 b1r' --emit=path
 
 Exit codes: 0 ok, 1 errors in the program, 2 usage or unreadable file, 3 simulated fault or refused command,
-4 time or instruction limit reached, 70 internal error.)";
+4 time or instruction limit reached, 70 internal error, 130 interrupted.)";
 
 constexpr double kMaxSeconds = 1e9;
 
@@ -39,7 +39,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--until", until, "run to this simulated time in seconds, or until idle")->type_name("idle|TIME")->capture_default_str();
   app.add_option("--max-time", max_time, "give up at this simulated time in seconds")->type_name("TIME")->capture_default_str();
   app.add_option("--max-instructions", o.max_instructions, "give up after so many instructions")->capture_default_str();
-  app.add_option("--record", o.record, "write every servo sample to a .csv or .npz file")->type_name("FILE");
+  app.add_option("--record", o.record, "write every servo sample to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--gather", o.gather, "write what the program gathers to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--plot", o.plots, "draw path and motion to a .svg, .png or .html file")->type_name("FILE")->allow_extra_args(false);
   app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo"}));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "runtime/gather/plot.h"
 
@@ -13,6 +14,23 @@ std::string unknown_ending(const RunOptions& options) {
     if (!file.empty() && !runtime::table_format_of(file)) return file;
   for (const std::string& file : options.plots)
     if (!runtime::plot_format_of(file)) return file;
+  return {};
+}
+
+std::string clashing_file(const RunOptions& options) {
+  std::vector<std::string> outputs{options.record, options.gather};
+  outputs.insert(outputs.end(), options.plots.begin(), options.plots.end());
+  const auto same = [](const std::string& a, const std::string& b) {
+    std::error_code ignored;
+    return a == b || std::filesystem::equivalent(a, b, ignored);
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (outputs[i].empty()) continue;
+    for (const std::string& input : options.files)
+      if (same(outputs[i], input)) return outputs[i];
+    for (std::size_t k = i + 1; k < outputs.size(); ++k)
+      if (same(outputs[i], outputs[k])) return outputs[i];
+  }
   return {};
 }
 

@@ -36,4 +36,7 @@ class Outputs {
 /// The first of the files whose ending is none that can be written, or empty.
 std::string unknown_ending(const RunOptions& options);
 
+/// The first output file that is an input file or another output as well, or empty.
+std::string clashing_file(const RunOptions& options);
+
 }  // namespace pmac::tool

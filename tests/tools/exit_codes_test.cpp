@@ -146,6 +146,49 @@ TEST_CASE("usage and files that cannot be read: exit 2", "[tools]") {
   CHECK(contains(w.run("pmacc", "--help").out, "Examples:"));
 }
 
+TEST_CASE("moves that take no time, without end, are a fault and no hang", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nlinear ta0 ts0 F10\nwhile(1){X0}\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e '&1b1r' --max-time 1");
+  CHECK(r.code == 3);
+  CHECK(contains(r.err, "took no time"));
+}
+
+TEST_CASE("a move that would need millions of segments, a speed of 0 and a set-up of nan are named", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X Coord[1].SegMoveTime=5\nopen prog 1\nlinear F10 X1e9\nclose\n");
+  CHECK(w.run("pmac-run", "a.pmc -e '&1b1r'").code == 3);
+  w.write("b.pmc", "&1 #1->1000X Motor[1].MaxSpeed=0\nopen prog 1\nrapid X10\nclose\n");
+  const ToolResult r = w.run("pmac-run", "b.pmc -e '&1b1r' --json=summary");
+  CHECK(r.code == 3);
+  CHECK(contains(r.err, "MaxSpeed"));
+  CHECK(contains(r.out, "\"final\": 0.0"));
+  CHECK(contains(w.run("pmac-run", "b.pmc -e 'Motor[1].JogTa=0/0'").err, "error #23"));
+  CHECK(contains(w.run("pmac-run", "b.pmc -e 'Motor[1].JogSpeed=0 #1j=100'").err, "JogSpeed"));
+}
+
+TEST_CASE("very long lines and deep macro calls are refused quickly", "[tools]") {
+  const Workspace w;
+  std::string line = "open prog 1\n";
+  for (int i = 0; i < 100000; ++i) line += "X1 ";
+  w.write("line.pmc", line + "\nclose\n");
+  CHECK(w.run("pmacc", "--check line.pmc").code == 1);
+  std::string calls = "#define F(x) x\nP1=";
+  for (int i = 0; i < 20000; ++i) calls += "F(";
+  calls += "1" + std::string(20000, ')') + "\n";
+  w.write("macro.pmc", calls);
+  CHECK(w.run("pmacc", "--check macro.pmc").code == 1);
+}
+
+TEST_CASE("an output never replaces an input or another output", "[tools]") {
+  const Workspace w;
+  w.write("a.csv", "&1 #1->X\nopen prog 1\nX1\nclose\n");
+  CHECK(w.run("pmac-run", "a.csv -e '&1b1r' --record a.csv").code == 2);
+  CHECK(w.run("pmac-run", "a.csv -e '&1b1r' --record r.csv --gather r.csv").code == 2);
+  CHECK(w.run("pmacc", "a.csv -o a.csv").code == 2);
+  CHECK(contains(w.read("a.csv"), "open prog 1"));
+}
+
 TEST_CASE("refused commands are named with the controller's number, exit 3, and the rest goes on", "[tools]") {
   const Workspace w;
   w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nX1\nclose\n");

@@ -14,6 +14,7 @@ constexpr int kMaxBlocks = 100;
 constexpr int kMaxBareNesting = 100;  // if (a) if (b) ... without braces
 constexpr int kMaxElseIf = 500;
 constexpr int kMaxOperators = 1000;   // of one statement
+constexpr int kMaxLineTokens = 4000;  // after macro expansion; long lines cost time with the square of their length
 constexpr int kMaxPrefix = 200;       // ---- in front of one operand
 
 bool is_control(std::size_t type) { return type == T::IF || type == T::WHILE || type == T::DO || type == T::ELSE || type == T::SWITCH; }
@@ -91,8 +92,11 @@ class NestingScan {
 bool within_limits(SyntaxTree& tree, source::Diagnostics& diagnostics) {
   NestingScan scan;
   std::size_t line = 0;
+  int on_line = 0;
   for (const antlr4::Token* token : tree.tokens->getTokens()) {
     const char* problem = scan.take(token->getType(), token->getLine() != line);
+    on_line = token->getLine() == line ? on_line + 1 : 0;
+    if (on_line > kMaxLineTokens) problem = "this line is too long; break it";
     line = token->getLine();
     if (!problem) continue;
     diagnostics.error("PM2010", tree.span_of(*token), problem);

@@ -13,6 +13,7 @@ using Kind = PreprocessorToken::Kind;
 
 constexpr std::size_t kMaxExpansionDepth = 200;
 constexpr std::size_t kMaxProducedTokens = 200000;
+constexpr int kMaxArgumentDepth = 100;  // macro calls inside the arguments of macro calls
 
 bool is_name_start(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -280,7 +281,14 @@ std::size_t Preprocessor::expand_call(const Tokens& in, std::size_t at, const Ma
       diagnostics_.error("PM1013", use, fmt::format("macro '{}' takes {} argument(s)", macro.name, macro.parameters.size())).notes.push_back({macro.name_span, "defined here"});
       return out.push_back(in[at]), at;
     }
+    if (argument_depth_ >= kMaxArgumentDepth) {
+      diagnostics_.error("PM1012", use, fmt::format("calls of macro '{}' are nested too deep in their arguments", macro.name));
+      produced_ = kMaxProducedTokens + 1;
+      return next - 1;
+    }
+    ++argument_depth_;
     for (const Tokens& argument : *read) expand(argument, active, arguments.emplace_back());
+    --argument_depth_;
     next = open;
   }
   Tokens replaced;

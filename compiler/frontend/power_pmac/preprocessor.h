@@ -87,6 +87,7 @@ class Preprocessor {
   std::vector<Conditional> conditionals_;
   ExpandedText* out_ = nullptr;
   int include_depth_ = 0;
+  int argument_depth_ = 0;    // calls inside the arguments of calls, at the moment
   std::size_t produced_ = 0;  // tokens made for the current line: stops explosive macros
 };
 

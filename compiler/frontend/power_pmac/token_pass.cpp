@@ -41,6 +41,7 @@ class TokenPass {
       operand_wanted_ = wants_operand(in_type_);
       before_ = in_type_;
       before_line_ = in_[at_]->getLine();
+      last_stop_ = in_[at_]->getStopIndex();
       out_.push_back(std::move(in_[at_]));
     }
     return std::move(out_);
@@ -64,12 +65,22 @@ class TokenPass {
   void take_outside(std::size_t type, bool new_line) {
     const bool behind_operator = operand_wanted_;
     if (new_line && !behind_operator && is_binary_operator(type)) return set_type(type_at_line_start(type));
+    if (!in_buffer_ && type == T::AMPERSAND && addresses_coord()) return set_type(T::COORD);
     if (!in_buffer_ || behind_operator) return;
     if (is_move_word(type)) return take_move_word(type);
     if (is_motion_keyword(type)) return take_motion_keyword(type);
     if ((type == T::LETTER_M || type == T::LETTER_D) && !assignment_follows()) set_type(T::CODE);
     if (type == T::PSET) group_ = Group::kPset;
     else if (!is_part_of_word(type)) group_ = Group::kNone;
+  }
+
+  /// On line, `P1=5 &2` addresses a coordinate system; `P1=5&2` and `P1=5 & 2` are a bitwise and.
+  bool addresses_coord() const {
+    if (at_ == 0 || at_ + 1 >= in_.size()) return false;
+    const bool blank_before = last_stop_ + 1 < in_[at_]->getStartIndex();
+    const bool glued_behind = in_[at_]->getStopIndex() + 1 == in_[at_ + 1]->getStartIndex();
+    const std::size_t next = in_[at_ + 1]->getType();
+    return blank_before && glued_behind && (next == T::NUMBER || next == T::STAR);
   }
 
   void take_move_word(std::size_t type) {
@@ -181,6 +192,7 @@ class TokenPass {
   std::size_t in_type_ = 0;      // type that the lexer gave to the token at hand
   std::size_t before_ = T::SEMICOLON;
   std::size_t before_line_ = 0;
+  std::size_t last_stop_ = 0;    // last character of the token before
   int depth_ = 0;
   bool operand_wanted_ = false;
   bool in_buffer_ = false;
