@@ -39,7 +39,10 @@ class MachineHost : public Host {
   }
 
   double read_i(Thread&, int number) override { return s_.i_values[static_cast<std::size_t>(number)]; }
-  void write_i(Thread&, int number, double value) override { s_.i_values[static_cast<std::size_t>(number)] = value; }
+  void write_i(Thread& thread, int number, double value) override {
+    s_.warn(thread.source(), "I variables are plain variables here and set no element; assign the element by its name");
+    s_.i_values[static_cast<std::size_t>(number)] = value;
+  }
 
   double read_element(Thread& thread, const ElementAddress& address) override {
     return read_element_value(s_, Runner::of(thread), address);

@@ -57,6 +57,13 @@ ElementId element_of(MotionParameter parameter) {
   }
 }
 
+/// The word that the program has: pvt and spline set times as well as modes.
+std::string_view statement_name(MotionParameter parameter) {
+  if (parameter == MotionParameter::kPvtTime) return "pvt";
+  if (parameter >= MotionParameter::kSplineTime0 && parameter <= MotionParameter::kSplineTime2) return "spline";
+  return motion_parameter_name(parameter);
+}
+
 }  // namespace
 
 void OpenBlock::add(WordKind kind, int index, double word) {
@@ -117,7 +124,7 @@ std::optional<Fault> set_motion_parameter(MotionParameter parameter, double valu
   const auto cs = static_cast<unsigned>(coord);
   const ElementId id = element_of(parameter);
   if (id == ElementId::kCount)
-    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} is not simulated", motion_parameter_name(parameter))};
+    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} is not simulated", statement_name(parameter))};
   if (!std::isfinite(value))
     return Fault{FaultKind::kBadTarget, source, fmt::format("{} is {}, not a finite number", motion_parameter_name(parameter), value)};
   if (parameter == MotionParameter::kFeed && value <= 0)
