@@ -23,20 +23,12 @@ std::size_t slot_count(ElementId id) {
 ElementStore::ElementStore() {
   for (int e = 0; e < static_cast<int>(ElementId::kCount); ++e) {
     const auto id = static_cast<ElementId>(e);
-    base_.push_back(values_.size());
+    const auto& counts = bytecode::element_info(id).index_counts;
+    const auto at_least_1 = [](int n) { return static_cast<std::size_t>(n > 0 ? n : 1); };
+    rows_.push_back({values_.size(), at_least_1(counts[1]), at_least_1(counts[2]), is_view(id)});
     values_.insert(values_.end(), slot_count(id), bytecode::element_info(id).default_value);
   }
   assigned_.assign(values_.size(), false);
-}
-
-std::size_t ElementStore::slot(ElementId id, unsigned i0, unsigned i1, unsigned i2) const {
-  const std::size_t base = base_[static_cast<std::size_t>(id)];
-  if (is_view(id)) return base;
-  const auto& counts = bytecode::element_info(id).index_counts;
-  std::size_t offset = i0;
-  if (counts[1] > 0) offset = offset * static_cast<std::size_t>(counts[1]) + i1;
-  if (counts[2] > 0) offset = offset * static_cast<std::size_t>(counts[2]) + i2;
-  return base + offset;
 }
 
 void ElementStore::assign(const ElementAddress& a, double value) {

@@ -29,8 +29,13 @@ class ElementStore {
   }
 
  private:
-  std::size_t slot(bytecode::ElementId id, unsigned i0, unsigned i1, unsigned i2) const;
-  std::vector<std::size_t> base_;   // by element
+  /// Where the values of an element begin, and how many its second and third index count; 0 for views.
+  struct Row { std::size_t base = 0; std::size_t count1 = 1, count2 = 1; bool view = false; };
+  std::size_t slot(bytecode::ElementId id, unsigned i0, unsigned i1, unsigned i2) const {
+    const Row& row = rows_[static_cast<std::size_t>(id)];
+    return row.view ? row.base : row.base + (i0 * row.count1 + i1) * row.count2 + i2;
+  }
+  std::vector<Row> rows_;           // by element
   std::vector<double> values_;
   std::vector<bool> assigned_;
 };

@@ -128,11 +128,12 @@ void Machine::State::scan(int number, double) {
 }
 
 void Machine::State::scan_plcs(double time_ms) {
+  if (std::none_of(plcs.begin(), plcs.end(), [](const Plc& plc) { return plc.running; })) return;
   const bool at_rti = rti_at_or_after_ms(time_ms) == time_ms;
   const bool at_background = time_ms >= last_background_ms + background_period_ms(*this);
   for (int n = 0; n < bytecode::kMaxPlcs; ++n) {
-    const bool foreground = is_foreground(*this, n);
-    if (plcs[static_cast<std::size_t>(n)].running && (foreground ? at_rti : at_background)) scan(n, time_ms);
+    if (!plcs[static_cast<std::size_t>(n)].running) continue;
+    if (is_foreground(*this, n) ? at_rti : at_background) scan(n, time_ms);
   }
   if (at_background) last_background_ms = time_ms;
 }
