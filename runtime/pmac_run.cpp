@@ -54,7 +54,12 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
                  who.c_str(), record.fault.detail.c_str());
   };
   if (shows_progress(options))
-    o.progress = [](double time_ms) { std::fprintf(stderr, "\r%.0f s simulated ", time_ms / 1000.0); };
+    o.progress = [last = std::chrono::steady_clock::now()](double time_ms) mutable {
+      const auto now = std::chrono::steady_clock::now();
+      if (now - last < std::chrono::milliseconds(200)) return;
+      last = now;
+      std::fprintf(stderr, "\r%.0f s simulated ", time_ms / 1000.0);
+    };
   return o;
 }
 

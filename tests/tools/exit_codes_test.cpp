@@ -196,6 +196,7 @@ TEST_CASE("refused commands are named with the controller's number, exit 3, and 
   CHECK(r.code == 3);
   CHECK(contains(r.err, "error #22"));
   CHECK(contains(r.err, "error #20"));
+  CHECK(contains(w.run("pmac-run", "a.pmc --at 0.001 'Out3=1'").err, "'Out3' is not declared"));
   CHECK(contains(r.out, "\"final\": 1000.0"));
 }
 

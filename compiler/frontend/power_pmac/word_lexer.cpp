@@ -149,7 +149,8 @@ bool WordLexer::must_be_name(std::string_view word, std::size_t end) const {
   const bool has_digit = std::any_of(word.begin(), word.end(), is_digit);
   if (at(end) == '[' || (at(end) == '.' && is_letter(at(end + 1)))) return !(has_digit && split(word, end - word.size()).type);
   const bool assigned = at(next) == '=' && at(next + 1) != '=';
-  return !in_buffer_ && assigned && !has_digit && lower(word) != "j";
+  const bool numbered_variable = has_digit && run_length(word) == 1;  // P1 = 5; Out3 = 1 is a name
+  return !in_buffer_ && assigned && !numbered_variable && lower(word) != "j";
 }
 
 std::size_t WordLexer::axis_definition_type(std::string_view run) const {

@@ -56,13 +56,9 @@ TEST_CASE("an address behind a value on a command line is an address; glued or s
 }
 
 TEST_CASE("commanded velocity of programmed moves and jogs is read in motor units a servo cycle", "[programs]") {
-  ProgramBench bench("a.pmc", "&1 #1->1000X\nopen prog 1\nlinear F10 ta100 ts0\nX2 X4\nclose\nopen plc 1\nif (Sys.Time > 0.25 && P1 == 0) P1 = Motor[1].DesVel\nclose\n");
-  pmac::runtime::RunLimits limits;
-  bench.machine->at(300.0, "#1k");
-  bench.run("enable plc 1 &1 b1r", limits);
-  ProgramBench show("a.pmc", "&1 #1->1000X #2->Y\nopen prog 1\nlinear F10 ta100 ts0\nX2 X4\nclose\n&2 #3->X\nopen prog 2\nrapid dwell 250 X(1000*Motor[1].DesVel)\nclose\n");
-  show.run("&1 b1r &2 b2r");
-  CHECK(show.motor(3).final_mu == Approx(1000 * 10 * 0.44274211).epsilon(1e-6));  // 10 mu/ms times the servo period
+  ProgramBench bench("a.pmc", "&1 #1->1000X #2->Y\nopen prog 1\nlinear F10 ta100 ts0\nX2 X4\nclose\n&2 #3->X\nopen prog 2\nrapid dwell 250 X(1000*Motor[1].DesVel)\nclose\n");
+  bench.run("&1 b1r &2 b2r");
+  CHECK(bench.motor(3).final_mu == Approx(1000 * 10 * 0.44274211).epsilon(1e-6));  // 10 mu/ms times the servo period
 }
 
 TEST_CASE("homez in a program makes the place where the motor has stopped the zero", "[programs]") {
