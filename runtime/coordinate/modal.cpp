@@ -103,6 +103,11 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
     return Fault{FaultKind::kNotSimulated, source, fmt::format("{} moves are not simulated", move_mode_name(modal.mode))};
   if (!is_circle(modal.mode) && (block.center_words != 0 || block.has_radius))
     return Fault{FaultKind::kMoveType, source, "centre or radius words outside circle mode; program circle1 or circle2 before"};
+  if (block.velocity_axes != 0)
+    return Fault{FaultKind::kMoveType, source, "an end velocity (X10:5) outside pvt mode; program pvt before"};
+  const unsigned other_set = modal.mode >= MoveMode::kCircle3 ? 0x07u : 0x38u;  // I J K, or II JJ KK
+  if (is_circle(modal.mode) && (block.center_words & other_set) != 0)
+    return Fault{FaultKind::kMoveType, source, "centre words of the other axis set: I J K go with circle1 and circle2, II JJ KK with circle3 and circle4"};
   return std::nullopt;
 }
 

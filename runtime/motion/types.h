@@ -76,7 +76,6 @@ struct PipelineConfig {
   bool lookahead = false;               // segmented only
   int lookahead_segments = 0;           // LHDistance
   double servo_period_ms = 0.44274211;  // at which limits are counted where the path's velocity steps; 0: stop there
-  bool limit_jerk = false;
   double radius_error_limit_uu = 0;     // 0: off
   double min_arc_len = 0;               // semicircles; 0: 2^-20
   double max_circle_accel = 0;          // uu per feed_time^2; 0: off

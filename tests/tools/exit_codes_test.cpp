@@ -79,6 +79,14 @@ TEST_CASE("a division by zero in a move is a fault at its line, exit 3", "[tools
   CHECK(contains(r.out, "\"status\": \"fault\""));
 }
 
+TEST_CASE("words that do not belong to the mode are a fault, never ignored", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "&1 #1->1000X #2->1000Y Coord[1].SegMoveTime=5\nopen prog 1\nlinear F10\nX5:3\nclose\n");
+  CHECK(contains(w.run("pmac-run", "a.pmc -e '&1b1r'").err, "a.pmc:4"));
+  w.write("b.pmc", "&1 #1->1000X #2->1000Y Coord[1].SegMoveTime=5\nopen prog 1\nF10 normal k-1\ncircle1 X10 Y0 II5 JJ0\nclose\n");
+  CHECK(contains(w.run("pmac-run", "b.pmc -e '&1b1r'").err, "b.pmc:4"));
+}
+
 TEST_CASE("a computed negative feed rate is a fault, exit 3", "[tools]") {
   const Workspace w;
   w.write("a.pmc", "&1 #1->1000X\nopen prog 1\nF(P1-5)\nX5\nclose\n");
