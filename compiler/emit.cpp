@@ -1,6 +1,7 @@
 // The text forms of the compiler's hops.
 #include <fmt/format.h>
 
+#include "compiler/bytecode/element.h"
 #include "compiler/compiler.h"
 #include "compiler/session_state.h"
 

@@ -1,4 +1,5 @@
 #include "runtime/element_store.h"
+#include "compiler/bytecode/element.h"
 
 #include <cmath>
 #include <string>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/bytecode/element.h"
 #include "runtime/element_store.h"
 
 namespace pmac::runtime {

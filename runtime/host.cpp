@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/opcode.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {

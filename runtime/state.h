@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/bytecode/element.h"
 #include "runtime/coordinate/coord_system.h"
 #include "runtime/element_store.h"
 #include "runtime/gather_unit.h"

@@ -2,6 +2,7 @@
 // User's Manual p683-694; in-position, training material.
 #include <algorithm>
 
+#include "compiler/bytecode/element.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {

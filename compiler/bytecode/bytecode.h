@@ -11,37 +11,15 @@
 
 namespace pmac::bytecode {
 
-// --- vocabulary, made from the tables -------------------------------------------------------------------------------
+// --- vocabulary ---------------------------------------------------------------------------------------------------------
+// The enumerators stand in opcode.h, function.h, element.h and control.h, so that a new row makes only its users compile again.
 
-enum class Opcode : std::uint16_t {
-#define OPCODE(Name, text, format, meaning) k##Name,
-#include "compiler/bytecode/opcode.def"
-#undef OPCODE
-  kCount
-};
-
-enum class Function : std::uint16_t {
-#define FUNCTION(Name, name, argument_count, meaning) k##Name,
-#include "compiler/bytecode/function.def"
-#undef FUNCTION
-  kCount
-};
-
-enum class ElementId : std::uint16_t {
-#define ELEMENT(Id, name, count0, count1, count2, Type, default_value, unit, Access, Simulation, meaning) k##Id,
-#include "compiler/bytecode/element.def"
-#undef ELEMENT
-  kCount
-};
-
-/// How the operands of an instruction are read; see the rows of opcode.def.
-enum class OperandFormat : std::uint8_t {
-  kNone, kReg, kReg3, kRegReg, kRegRegReg, kRegConst, kRegInt,
-  kRegP, kRegQ, kRegM, kRegI, kRegC, kRegD, kRegRegClass, kRegElement,
-  kFunc, kJump, kRegJump, kLoop, kRegLoop, kTarget, kCallTarget, kRegSync,
-  kMoveMode, kAxisMask, kRegMotion, kRegWord, kControl, kString, kPortString, kRegString,
-  kAxisDef, kPointerDef, kProgram,
-};
+enum class Opcode : std::uint16_t;
+enum class Function : std::uint16_t;
+enum class ElementId : std::uint16_t;
+enum class ControlVerb : std::uint16_t;
+inline constexpr auto kNoFunction = static_cast<Function>(0xffff);
+inline constexpr auto kNoElement = static_cast<ElementId>(0xffff);
 
 enum class VariableClass : std::uint8_t { kP, kQ, kM, kI, kL, kR, kC, kD, kElement };
 
@@ -79,61 +57,11 @@ std::string_view motion_parameter_name(MotionParameter parameter);
 /// 0-2 for I J K and 3-5 for II JJ KK; kRadius carries 0.
 enum class WordKind : std::uint8_t { kTarget, kVelocity, kTriggerDistance, kCenter, kRadius, kCount };
 
-/// Verbs of Control. Unless said otherwise argument 0 is the number of the coordinate system, program or motor; nan
-/// means "the one addressed by this thread" (executing coordinate system, Ldata.Coord, Ldata.Motor, or & and #).
-enum class ControlVerb : std::uint16_t {
-  // coordinate systems
-  kAbort, kBegin /* coord, program[.label] */, kRun, kStep, kStart /* coord, program */, kPause, kHold, kResume,
-  kQuickStop, kRetrace, kForward, kEnable, kDisable, kDelayedDisable, kAbortDisable, kTimeBase /* coord, percent */,
-  kPmatch, kPset /* axis index, value */, kPclr, kPstore, kPload,
-  kDefineLookahead /* coord, segments */, kDeleteLookahead,
-  // motors; a position or distance argument of nan means Motor[].ProgJogPos
-  kJogPlus, kJogMinus, kJogStop, kJogTo /* motor, position mu */, kJogBy /* motor, distance mu from commanded */,
-  kJogByActual /* motor, distance mu from actual */, kJogToAndKeep /* motor, position */, kJogReturn,
-  kHome, kHomeZero, kKill, kDelayedKill, kPhase, kOpenLoop /* motor, percent */,
-  // PLC programs (argument 0: number)
-  kEnablePlc, kDisablePlc, kPausePlc, kResumePlc, kStepPlc,
-  // reports of the on-line stream (motor or coord)
-  kReportPosition, kReportVelocity, kReportDesired, kReportFollowingError, kReportStatus,
-  kReportCoordPosition, kReportCoordStatus, kReportTimeBase,
-  kReset, kSave,
-  kCount
-};
-std::string_view control_verb_name(ControlVerb verb);
-/// Exact number of arguments of a verb, including the number of the thing it acts on.
-int control_argument_count(ControlVerb verb);
-
 enum class AssignOp : std::uint8_t { kSet, kAdd, kSub, kMul, kDiv, kMod, kAnd, kOr, kXor, kShiftLeft, kShiftRight, kCount };
 /// current (op)= value, with the operators' own semantics (integers for the bitwise ones).
 double apply_assignment(AssignOp op, double current, double value);
 /// r[b] op r[c] of the arithmetic, bitwise and comparison instructions (kAdd .. kNear).
 double apply_binary(Opcode op, double left, double right);
-
-// --- rows of the tables ----------------------------------------------------------------------------------------------
-
-struct OpcodeInfo { std::string_view text; OperandFormat format; std::string_view meaning; };
-const OpcodeInfo& opcode_info(Opcode opcode);
-
-struct FunctionInfo { std::string_view name; int argument_count; std::string_view meaning; };
-const FunctionInfo& function_info(Function function);
-
-enum class ElementType : std::uint8_t { kDouble, kInteger, kMask, kBit };
-enum class ElementAccess : std::uint8_t { kSaved, kWork, kStatus };
-enum class ElementSimulation : std::uint8_t { kActs, kStored };
-struct ElementInfo {
-  std::string_view name;                 // "Motor[].JogSpeed"
-  int index_counts[kMaxElementIndices];  // 0: no such index
-  ElementType type;
-  double default_value;
-  std::string_view unit;
-  ElementAccess access;
-  ElementSimulation simulation;
-  std::string_view meaning;
-  int index_count() const;               // how many indices the name has
-};
-const ElementInfo& element_info(ElementId id);
-/// The element of a name such as "motor[].jogspeed" (indices removed, any case), or kCount.
-ElementId find_element(std::string_view pattern);
 
 // --- what a module holds -----------------------------------------------------------------------------------------------
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/control.h"
 
 namespace pmac::bytecode {
 namespace {

@@ -1,4 +1,5 @@
 #include "compiler/bytecode/module_text.h"
+#include "compiler/bytecode/element.h"
 
 #include <algorithm>
 #include <array>

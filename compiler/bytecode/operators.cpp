@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/opcode.h"
 
 namespace pmac::bytecode {
 namespace {

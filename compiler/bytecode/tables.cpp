@@ -7,6 +7,10 @@
 #include <unordered_map>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/function.h"
+#include "compiler/bytecode/opcode.h"
 
 namespace pmac::bytecode {
 namespace {
@@ -141,7 +145,7 @@ int ElementInfo::index_count() const {
 ElementId find_element(std::string_view pattern) {
   static const std::unordered_map<std::string, ElementId> names = make_element_names();
   const auto found = names.find(lower_case(pattern));
-  return found == names.end() ? ElementId::kCount : found->second;
+  return found == names.end() ? kNoElement : found->second;
 }
 
 }  // namespace pmac::bytecode

@@ -1,6 +1,7 @@
 // Proves that a module is safe to execute: the tables here, the programs in verify_code.cpp.
 #include <cmath>
 
+#include "compiler/bytecode/element.h"
 #include "compiler/bytecode/module_text.h"
 #include "compiler/bytecode/verify_code.h"
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/function.h"
 #include "compiler/bytecode/module_text.h"
+#include "compiler/bytecode/opcode.h"
 
 namespace pmac::bytecode {
 namespace {

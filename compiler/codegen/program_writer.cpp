@@ -1,4 +1,5 @@
 #include "compiler/codegen/program_writer.h"
+#include "compiler/bytecode/opcode.h"
 
 #include <algorithm>
 

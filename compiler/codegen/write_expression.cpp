@@ -1,6 +1,7 @@
 // Expressions and conditions.
 #include <cmath>
 
+#include "compiler/bytecode/opcode.h"
 #include "compiler/codegen/program_writer.h"
 
 namespace pmac::compiler::codegen {

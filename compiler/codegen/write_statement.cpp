@@ -3,6 +3,9 @@
 
 #include <limits>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/opcode.h"
 #include "compiler/codegen/program_writer.h"
 
 namespace pmac::compiler::codegen {

@@ -1,4 +1,5 @@
 #include "compiler/ir/ir.h"
+#include "compiler/bytecode/opcode.h"
 
 #include <cmath>
 

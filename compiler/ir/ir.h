@@ -53,13 +53,13 @@ struct NameUse { std::string name; bool has_arguments = false; std::vector<ExprP
 struct Element {
   std::string pattern;
   std::vector<ExprPtr> indices;
-  bytecode::ElementId element = bytecode::ElementId::kCount;
+  bytecode::ElementId element = bytecode::kNoElement;
   bool address = false;
 };
 
 struct Unary { Operator op; ExprPtr operand; };
 struct Binary { Operator op; ExprPtr left, right; };
-struct FunctionCall { bytecode::Function function = bytecode::Function::kCount; std::vector<ExprPtr> arguments; };
+struct FunctionCall { bytecode::Function function = bytecode::kNoFunction; std::vector<ExprPtr> arguments; };
 
 struct Expr {
   Span span;
@@ -111,7 +111,7 @@ struct Dwell { ExprPtr time_ms; };
 struct Delay { ExprPtr time_ms; };
 
 /// One verb for one thing, or for each of several: see ControlVerb. Missing arguments are nan.
-struct Control { ControlVerb verb = ControlVerb::kAbort; std::vector<ExprPtr> arguments; };
+struct Control { ControlVerb verb{}; std::vector<ExprPtr> arguments; };
 struct Command { std::string text; };
 struct Send { int port = 0; std::string text; };
 

@@ -1,6 +1,9 @@
 // The text form of the IR: one statement a line, nested ones indented; bound names show what they are bound to.
 #include <fmt/format.h>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/function.h"
 #include "compiler/ir/ir.h"
 
 namespace pmac::compiler::ir {
@@ -24,7 +27,7 @@ std::string print_variable(const Variable& variable) {
 }
 
 std::string print_element(const Element& element) {
-  std::string text(element.element == bytecode::ElementId::kCount ? std::string_view(element.pattern) : bytecode::element_info(element.element).name);
+  std::string text(element.element == bytecode::kNoElement ? std::string_view(element.pattern) : bytecode::element_info(element.element).name);
   for (const ExprPtr& index : element.indices)
     if (const std::size_t at = text.find("[]"); at != std::string::npos) text.insert(at + 1, print(*index));
   return element.address ? text + ".a" : text;

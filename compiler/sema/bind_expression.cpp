@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/function.h"
 #include "compiler/sema/binder.h"
 
 namespace pmac::compiler::sema {
@@ -38,7 +40,7 @@ bytecode::Function find_function(std::string_view name) {
   const std::string wanted = lower(name);
   for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::Function::kCount); ++i)
     if (bytecode::function_info(static_cast<bytecode::Function>(i)).name == wanted) return static_cast<bytecode::Function>(i);
-  return bytecode::Function::kCount;
+  return bytecode::kNoFunction;
 }
 
 /// Functions of the controller that this compiler knows by name only.
@@ -85,11 +87,11 @@ void Binder::bind_target(ir::Expr& expr) {
   bind_expr(expr);
   if (is_assignable(expr)) {
     const auto* element = std::get_if<ir::Element>(&expr.node);
-    if (element && element->element != bytecode::ElementId::kCount) note_stored_element(*element, expr.span);
+    if (element && element->element != bytecode::kNoElement) note_stored_element(*element, expr.span);
     return;
   }
   const auto* element = std::get_if<ir::Element>(&expr.node);
-  if (element && element->element == bytecode::ElementId::kCount) return;  // reported
+  if (element && element->element == bytecode::kNoElement) return;  // reported
   if (element && element->address) diagnostics_.error("PM3042", expr.span, "the address of an element cannot be assigned");
   else if (element && !buffer_ && !settings_.online) diagnostics_.warning("PM6011", expr.span, fmt::format("{} is a status element here; this assignment is left out", bytecode::element_info(element->element).name));
   else if (element) diagnostics_.error("PM3043", expr.span, fmt::format("{} is a status element; it can only be read", bytecode::element_info(element->element).name));
@@ -99,7 +101,7 @@ void Binder::bind_target(ir::Expr& expr) {
 bool Binder::is_assignable(const ir::Expr& expr) const {
   if (std::holds_alternative<ir::Variable>(expr.node)) return true;
   const auto* element = std::get_if<ir::Element>(&expr.node);
-  if (!element || element->element == bytecode::ElementId::kCount || element->address) return false;
+  if (!element || element->element == bytecode::kNoElement || element->address) return false;
   return bytecode::element_info(element->element).access != bytecode::ElementAccess::kStatus;
 }
 
@@ -191,7 +193,7 @@ bool Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
     return true;
   }
   const bytecode::Function function = find_function(use.name);
-  if (function == bytecode::Function::kCount) return false;
+  if (function == bytecode::kNoFunction) return false;
   const auto wanted = static_cast<std::size_t>(bytecode::function_info(function).argument_count);
   if (use.arguments.size() != wanted) {
     diagnostics_.error("PM3048", expr.span, fmt::format("{} takes {} argument(s), not {}", lower(use.name), wanted, use.arguments.size()));
@@ -208,7 +210,7 @@ bool Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
 void Binder::bind_element(ir::Element& element, const source::Span& span) {
   for (ir::ExprPtr& index : element.indices) bind_value(*index);
   element.element = bytecode::find_element(element.pattern);
-  if (element.element == bytecode::ElementId::kCount) return report_unknown_element(element, span);
+  if (element.element == bytecode::kNoElement) return report_unknown_element(element, span);
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
   for (std::size_t i = 0; i < element.indices.size(); ++i) check_element_index(*element.indices[i], info.index_counts[i], info.name);
 }

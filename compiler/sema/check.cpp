@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
 #include "compiler/sema/binder.h"
 
 namespace pmac::compiler::sema {
@@ -62,7 +64,7 @@ void Binder::bind(ir::Assign& node, const source::Span& span) {
   const bool indexed_element = element && !element->indices.empty() && ir::constant_value(*element->indices.back());
   const bool listable = (variable || indexed_element) && node.op == bytecode::AssignOp::kSet && !node.synchronous;
   if (node.values.size() > 1 && !listable) diagnostics_.error("PM3023", span, "a list of values is assigned with = to variables, or to elements from a constant index on");
-  if (node.values.size() > 1 && indexed_element && element->element != bytecode::ElementId::kCount) {
+  if (node.values.size() > 1 && indexed_element && element->element != bytecode::kNoElement) {
     const double last = *ir::constant_value(*element->indices.back()) + static_cast<double>(node.values.size()) - 1;
     const int count = bytecode::element_info(element->element).index_counts[element->indices.size() - 1];
     if (last >= count) diagnostics_.error("PM3050", span, fmt::format("the list goes on to index {}; the last one of {} is {}", last, bytecode::element_info(element->element).name, count - 1));

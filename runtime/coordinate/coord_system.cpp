@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/bytecode/element.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {

@@ -1,6 +1,7 @@
 // From modes and words to a motion command. Source: User's Manual p665-743; the order rule of ta/td is inferred from published
 // examples that set td after every ta.
 #include "runtime/coordinate/modal.h"
+#include "compiler/bytecode/element.h"
 
 #include <cmath>
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/opcode.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "compiler/bytecode/function.h"
+#include "compiler/bytecode/opcode.h"
 #include "compiler/bytecode/operators.h"
 #include "runtime/interpreter/fuse.h"
 

@@ -1,5 +1,6 @@
 // Variables by computed number, elements, and synchronous assignments. Numbers are truncated toward zero; a number outside
 // the class is a fault (the controller leaves it undefined, Users Manual p553-555).
+#include "compiler/bytecode/element.h"
 #include "compiler/bytecode/module_text.h"
 #include "runtime/interpreter/core.h"
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "compiler/bytecode/function.h"
 #include "runtime/interpreter/interpreter.h"
 
 namespace pmac::runtime {

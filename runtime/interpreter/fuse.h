@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/opcode.h"
 
 namespace pmac::runtime {
 

@@ -1,4 +1,8 @@
 #include "tests/reference/random_module.h"
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/function.h"
+#include "compiler/bytecode/opcode.h"
 
 namespace pmac::reference {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/bytecode/control.h"
 #include "compiler/frontend/power_pmac/lowering.h"
 
 namespace pmac::compiler::power_pmac {

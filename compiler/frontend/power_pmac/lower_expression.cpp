@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "compiler/bytecode/function.h"
 #include "compiler/frontend/power_pmac/lowering.h"
 
 namespace pmac::compiler::power_pmac {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "compiler/bytecode/control.h"
 #include "compiler/frontend/power_pmac/lowering.h"
 
 namespace pmac::compiler::power_pmac {

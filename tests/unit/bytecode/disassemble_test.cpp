@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/opcode.h"
 #include "tests/reference/random_module.h"
 
 using namespace pmac::bytecode;

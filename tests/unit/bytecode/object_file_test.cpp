@@ -4,6 +4,7 @@
 #include <random>
 
 #include "compiler/bytecode/chunk.h"
+#include "compiler/bytecode/opcode.h"
 #include "tests/reference/random_module.h"
 
 using namespace pmac::bytecode;

@@ -1,3 +1,4 @@
+#include "compiler/bytecode/opcode.h"
 #include "compiler/bytecode/operators.h"
 
 #include <catch2/catch.hpp>

@@ -2,6 +2,10 @@
 #include <set>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/function.h"
+#include "compiler/bytecode/opcode.h"
 
 using namespace pmac::bytecode;
 
@@ -35,8 +39,8 @@ TEST_CASE("functions: argument counts are those of the table", "[bytecode]") {
 TEST_CASE("elements: found by name in any case, every one of them", "[bytecode]") {
   CHECK(find_element("motor[].JOGSPEED") == ElementId::kMotorJogSpeed);
   CHECK(find_element("Sys.ServoPeriod") == ElementId::kSysServoPeriod);
-  CHECK(find_element("Motor.JogSpeed") == ElementId::kCount);
-  CHECK(find_element("") == ElementId::kCount);
+  CHECK(find_element("Motor.JogSpeed") == kNoElement);
+  CHECK(find_element("") == kNoElement);
   for (int id = 0; id < static_cast<int>(ElementId::kCount); ++id) {
     const auto element = static_cast<ElementId>(id);
     CHECK(find_element(element_info(element).name) == element);

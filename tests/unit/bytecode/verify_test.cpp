@@ -4,6 +4,10 @@
 #include <limits>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "compiler/bytecode/function.h"
+#include "compiler/bytecode/opcode.h"
 #include "tests/reference/random_module.h"
 
 using namespace pmac::bytecode;

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "compiler/bytecode/opcode.h"
 #include "compiler/compiler.h"
 
 using namespace pmac;

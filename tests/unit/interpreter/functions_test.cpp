@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compiler/bytecode/function.h"
 #include "tests/unit/interpreter/recording_host.h"
 
 using namespace pmac::test;

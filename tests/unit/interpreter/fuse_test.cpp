@@ -1,3 +1,4 @@
+#include "compiler/bytecode/opcode.h"
 #include "runtime/interpreter/fuse.h"
 
 #include <catch2/catch.hpp>

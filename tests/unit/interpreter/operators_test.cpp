@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "compiler/bytecode/function.h"
+#include "compiler/bytecode/opcode.h"
 #include "tests/unit/interpreter/recording_host.h"
 
 using namespace pmac::test;

@@ -6,7 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
 #include "compiler/bytecode/module_text.h"
+#include "compiler/bytecode/opcode.h"
 #include "runtime/interpreter/interpreter.h"
 
 namespace pmac::test {

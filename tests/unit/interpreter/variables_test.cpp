@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "compiler/bytecode/element.h"
 #include "tests/unit/interpreter/recording_host.h"
 
 using namespace pmac::test;

@@ -1,3 +1,4 @@
+#include "compiler/bytecode/element.h"
 #include "runtime/io/io_space.h"
 
 #include <catch2/catch.hpp>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/opcode.h"
 
 namespace pmac::test {
 

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/opcode.h"
 #include "runtime/machine.h"
 #include "tests/unit/machine/assemble.h"
 
