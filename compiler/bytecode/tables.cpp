@@ -56,13 +56,15 @@ constexpr std::array<VerbRow, index_of(ControlVerb::kCount)> kVerbs = {{
     {"abort", 1}, {"begin", 2}, {"run", 1}, {"step", 1}, {"start", 2}, {"pause", 1}, {"hold", 1}, {"resume", 1},
     {"quick_stop", 1}, {"retrace", 1}, {"forward", 1}, {"enable", 1}, {"disable", 1}, {"ddisable", 1}, {"adisable", 1},
     {"time_base", 2}, {"pmatch", 1}, {"pset", 2}, {"pclr", 1}, {"pstore", 1}, {"pload", 1},
+    {"pread", 2}, {"vread", 2}, {"dread", 2}, {"fread", 2}, {"tread", 2},
     {"define_lookahead", 2}, {"delete_lookahead", 1},
     {"jog+", 1}, {"jog-", 1}, {"jog/", 1}, {"jog=", 2}, {"jog:", 2}, {"jog^", 2}, {"jog==", 2}, {"jog_return", 1},
+    {"jog=^", 3}, {"jog:^", 3}, {"jog^^", 3},
     {"home", 1}, {"homez", 1}, {"kill", 1}, {"dkill", 1}, {"phase", 1}, {"out", 2},
     {"enable_plc", 1}, {"disable_plc", 1}, {"pause_plc", 1}, {"resume_plc", 1}, {"step_plc", 1},
     {"report_position", 1}, {"report_velocity", 1}, {"report_desired", 1}, {"report_following_error", 1},
     {"report_status", 1}, {"report_coord_position", 1}, {"report_coord_status", 1}, {"report_time_base", 1},
-    {"reset", 0}, {"save", 0},
+    {"report_pointer", 1}, {"sendallcmds", 0}, {"reset", 0}, {"save", 0},
 }};
 
 template <std::size_t N>
