@@ -20,7 +20,7 @@ const std::vector<Rule>& rules() {
       {"compiler/source/", {"compiler/source/"}, {"fmt/", "nlohmann/"}},
       {"compiler/bytecode/", {"compiler/bytecode/", "compiler/source/"}, {"flatbuffers/", "object_file_generated.h", "fmt/"}},
       {"compiler/frontend/", {"compiler/"}, {"fmt/", "antlr4-runtime", "atn/", "PowerPmac", "Acr1000", "pugixml.hpp"}},
-      {"compiler/pmacc.cpp", {"compiler/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h"}},
+      {"compiler/tool/", {"compiler/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h"}},
       {"compiler/", {"compiler/"}, {"fmt/"}},
       {"kinematics/", {"kinematics/"}, {"Eigen/"}},
       {"runtime/tool/", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h"}},
