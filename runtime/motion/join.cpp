@@ -88,7 +88,7 @@ Join decide_join(const Move& previous, const Move& next, double entry_total_ms, 
   if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) return {};
   const Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
   const double room = std::min(2 * previous.time_ms - entry_total_ms, 2 * next.time_ms - next.stop_ramp.total_ms());
-  Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after};
+  Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after, 0};
   if (config.segment_time_ms > 0) {
     if (ramp.total_ms() > room) join.ramp = scaled_to(ramp, std::max(0.0, room));
     return join;

@@ -16,8 +16,8 @@ enum class JoinKind : std::uint8_t {
 struct Join {
   JoinKind kind = JoinKind::kStop;
   Ramp ramp;                    // of a blend
-  double dwell_ms = 0;          // of a stop: how long it waits
   double speed_before = 0, speed_after = 0;  // at the join, over all axes, uu/ms
+  double dwell_ms = 0;          // of a stop: how long it waits
 };
 
 /// entry_total_ms: length of the ramp or blend into `previous`.
