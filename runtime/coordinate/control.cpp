@@ -215,6 +215,7 @@ void CoordSystem::drop_program() {
   due_.clear();
   pending_moves_.clear();
   executed_.clear();
+  end_compensation();
   block_ = {};
   pause_requested_ = stepping_ = false;
   phase_ = Phase::kIdle;

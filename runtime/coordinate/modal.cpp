@@ -136,6 +136,7 @@ motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& bl
   motion::MotionCommand command;
   command.kind = is_circle(modal.mode) ? motion::CommandKind::kCircle : motion::CommandKind::kLinear;
   command.source = source;
+  command.mode = modal.mode;
   command.axes = block.axes;
   command.target_uu = block_target(modal, block, from_uu, elements, coord);
   command.feed_axes = modal.feed_axes;

@@ -52,6 +52,7 @@ struct MotionCommand {
   int compensation_side = 0;            // ccmode: 0 off, 1 left, 2 right
   double compensation_radius_uu = 0;    // ccr
   bool added = false;                   // put in by cutter compensation
+  bytecode::MoveMode mode = bytecode::MoveMode::kLinear;  // in force at the block, for reports
 };
 
 /// Limits of one motor that programmed moves respect. 0: off, for the inverse ones.
