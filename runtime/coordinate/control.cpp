@@ -216,6 +216,8 @@ void CoordSystem::drop_program() {
   pending_moves_.clear();
   executed_.clear();
   end_compensation();
+  spline_.cancel();
+  pvt_velocity_uu_ms_.fill(0);
   block_ = {};
   pause_requested_ = stepping_ = false;
   phase_ = Phase::kIdle;

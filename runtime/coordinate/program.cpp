@@ -75,6 +75,10 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
 std::optional<Fault> CoordSystem::set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source) {
   switch (parameter) {
     case bytecode::MotionParameter::kTsel: return select_transform(value, source);
+    case bytecode::MotionParameter::kPvtTime:
+    case bytecode::MotionParameter::kSplineTime0:
+    case bytecode::MotionParameter::kSplineTime1:
+    case bytecode::MotionParameter::kSplineTime2: return set_segment_time(parameter, value, modal, source);
     case bytecode::MotionParameter::kCcRadius:
     case bytecode::MotionParameter::kCcMode: return set_compensation(parameter, value, modal, source);
     default: return set_motion_parameter(parameter, value, machine_.elements, number_, source);
@@ -135,7 +139,10 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   machine_.elements.set(ElementId::kCoordOnceNoBlend, 0, cs);
   command.transform = frame_.transform;
   if (machine_.options.observers.motion_command) machine_.options.observers.motion_command(number_, command);
-  if (auto fault = compensate(std::move(command))) return give_up(thread, *fault);
+  const AxisVector start = std::exchange(program_uu_, command.target_uu);
+  const bool spline = command.kind == motion::CommandKind::kPvt && command.mode == MoveMode::kSpline;
+  next_id_ += spline ? 3 : command.compensation_side != 0 || compensation_.active() ? 2 : 1;  // what is added has the ids between
+  if (auto fault = spline ? add_to_spline(command, start) : hand_on(std::move(command), start)) return give_up(thread, *fault);
   collect_timings();
   if (stepping_) return stop_item(thread, AfterRest::kPause);
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
@@ -144,8 +151,46 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   return Flow::kSuspend;
 }
 
+/// A move other than a spline: what waits goes before it.
+std::optional<Fault> CoordSystem::hand_on(motion::MotionCommand command, const AxisVector& start_uu) {
+  if (auto fault = finish_spline()) return fault;
+  if (command.kind == motion::CommandKind::kPvt) command.start_velocity_uu_ms = std::exchange(pvt_velocity_uu_ms_, command.end_velocity_uu_ms);
+  else if (auto fault = pvt_has_ended(command.source)) return fault;
+  return compensate(std::move(command), start_uu);
+}
+
+std::optional<Fault> CoordSystem::add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu) {
+  if (auto fault = pvt_has_ended(command.source)) return fault;
+  if (command.compensation_side != 0 || compensation_.active())
+    return Fault{FaultKind::kCcMoveType, command.source, "spline moves are not allowed while cutter compensation is on"};
+  spline_moves_.clear();
+  spline_.add(command, start_uu, spline_moves_);
+  return add_spline_moves();
+}
+
+std::optional<Fault> CoordSystem::finish_spline() {
+  spline_moves_.clear();
+  spline_.finish(spline_moves_);
+  return add_spline_moves();
+}
+
+std::optional<Fault> CoordSystem::add_spline_moves() {
+  for (const motion::MotionCommand& command : spline_moves_)
+    if (auto fault = add_to_path(command)) return fault;
+  return std::nullopt;
+}
+
+/// A pvt move that does not end at rest needs another one after it.
+std::optional<Fault> CoordSystem::pvt_has_ended(bytecode::SourceLine source) const {
+  for (std::size_t axis = 0; axis < pvt_velocity_uu_ms_.size(); ++axis)
+    if (pvt_velocity_uu_ms_[axis] != 0)
+      return Fault{FaultKind::kPvt, source, fmt::format("the last pvt move leaves axis {} moving; end it with velocity 0, as in {}10:0",
+                                                        bytecode::axis_name(static_cast<int>(axis)), bytecode::axis_name(static_cast<int>(axis)))};
+  return std::nullopt;
+}
+
 /// The command, or what compensation makes of it and of those before, goes on its way.
-std::optional<Fault> CoordSystem::compensate(motion::MotionCommand command) {
+std::optional<Fault> CoordSystem::compensate(motion::MotionCommand command, const AxisVector& start_uu) {
   const auto cs = static_cast<unsigned>(number_);
   const ElementStore& e = machine_.elements;
   if (command.compensation_side != 0 && e.get(ElementId::kCoordSegMoveTime, cs) <= 0 && !compensation_.active()) {
@@ -153,14 +198,12 @@ std::optional<Fault> CoordSystem::compensate(motion::MotionCommand command) {
     command.compensation_side = 0;
   }
   const bool compensating = command.compensation_side != 0 || compensation_.active();
-  next_id_ += compensating ? 2 : 1;  // an added move has the id between
-  const AxisVector start = std::exchange(program_uu_, command.target_uu);
   compensated_.clear();
   if (compensating)
     compensation_.configure({e.get(ElementId::kCoordCCAddedArcBp, cs), static_cast<int>(e.get(ElementId::kCoordCCSize, cs)),
                              static_cast<int>(e.get(ElementId::kCoordCCDistance, cs)), e.get(ElementId::kCoordRadiusErrorLimit, cs),
                              e.get(ElementId::kCoordMinArcLen, cs)});
-  if (auto fault = compensation_.add(command, start, compensated_)) return fault;
+  if (auto fault = compensation_.add(command, start_uu, compensated_)) return fault;
   return add_compensated();
 }
 
@@ -335,6 +378,8 @@ void CoordSystem::calculate(double time_ms) {
 /// Ends blending; `then` happens when the motors have come to rest.
 std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
   if (on_path_) {
+    if (auto fault = pvt_has_ended(runner_.thread.source())) return fault;
+    if (auto fault = finish_spline()) return fault;
     if (auto fault = flush_compensation()) return fault;
     if (auto fault = pipeline_.end_sequence()) return fault;
     collect_timings();
