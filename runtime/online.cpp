@@ -215,6 +215,7 @@ Flow plc_verb(const Call& call) {
     case ControlVerb::kEnablePlc:
       if (plc.runner.get() == &call.runner) break;  // enabling itself changes nothing
       plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
+      plc.runner->thread.ends_scans = true;
       plc.runner->thread.begin(buffer->second);
       plc.active = plc.running = true;
       break;

@@ -53,7 +53,9 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
     case Opcode::kAxisWord:
       block_.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), r[instruction.a]);
       return Flow::kContinue;
-    case Opcode::kBlockEnd: return end_block(thread);
+    case Opcode::kBlockEnd: return block_.empty() ? Flow::kContinue : end_block(thread);
+    case Opcode::kStepBegin:
+    case Opcode::kStepEnd: return Flow::kContinue;
     case Opcode::kDwell:
     case Opcode::kDelay: {
       const double ms = r[instruction.a];
