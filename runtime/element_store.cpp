@@ -9,8 +9,8 @@ namespace {
 
 using bytecode::ElementId;
 
-/// Elements that are views of a variable array and hold nothing themselves.
-bool is_view(ElementId id) { return id == ElementId::kSysP || id == ElementId::kCoordQ; }
+/// Elements that are views of a variable array or of the user buffer and hold nothing themselves.
+bool is_view(ElementId id) { return id == ElementId::kSysP || id == ElementId::kCoordQ || (id >= ElementId::kSysCdata && id <= ElementId::kSysDdata); }
 
 std::size_t slot_count(ElementId id) {
   if (is_view(id)) return 1;

@@ -58,6 +58,7 @@ class CoordSystem {
   bool program_running() const { return phase_ != Phase::kIdle; }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
+  Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
@@ -66,6 +67,8 @@ class CoordSystem {
   void stop_program_from_inside() { stop_requested_ = true; }
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
+  /// Comes to rest and goes on at the next real-time interrupt.
+  Flow wait_for_interrupt(Thread& thread);
 
   // --- time ---------------------------------------------------------------------------------------------------------------
   /// Next time at which service() has something to do; kNever if none.
@@ -87,6 +90,8 @@ class CoordSystem {
   std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
   const AxisVector& calculated_position() const { return calculated_uu_; }
   AxisVector commanded_position(double time_ms);
+  /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
+  AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
 
  private:

@@ -141,7 +141,11 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kRegD: return Instruction::with_imm(op, reg(), imm_below(kDCount));
     case OperandFormat::kRegRegClass: return Instruction::with_bc(op, reg(), reg(), below(8));
     case OperandFormat::kRegElement: return Instruction::with_imm(op, reg(), imm_below(module_.element_refs.size()));
-    case OperandFormat::kFunc: return Instruction::with_bc(op, reg(), below(static_cast<unsigned>(Function::kCount)), reg(3));
+    case OperandFormat::kFunc: {
+      Function function = any(Function::kCount);
+      while (function_info(function).uses_memory != (op == Opcode::kMemoryFunction)) function = any(Function::kCount);
+      return Instruction::with_bc(op, reg(), static_cast<unsigned>(function), reg(9));
+    }
     case OperandFormat::kJump:
     case OperandFormat::kRegJump: return Instruction::with_imm(op, reg(), static_cast<std::int32_t>(pc + 1 + below(size - pc - 1)));
     case OperandFormat::kLoop:
@@ -155,7 +159,7 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kRegWord: return Instruction::with_bc(op, reg(), 0, below(static_cast<unsigned>(WordKind::kCount)));
     case OperandFormat::kControl: {
       const ControlVerb verb = any(ControlVerb::kCount);
-      return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(2), static_cast<unsigned>(control_argument_count(verb)));
+      return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(3), static_cast<unsigned>(control_argument_count(verb)));
     }
     case OperandFormat::kString:
     case OperandFormat::kPortString:

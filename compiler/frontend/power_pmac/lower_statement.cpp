@@ -126,6 +126,11 @@ void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
 }
 
 void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
+  if (assignment->call) {
+    ir::NameUse use{text_of(assignment->call), true, lower_arguments(assignment->arguments())};
+    const source::Span span = span_of(assignment);
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   ir::Assign result;
   result.target = lower_lvalue(assignment->lvalue());
   if (assignment->step) {

@@ -30,6 +30,7 @@ class Lowering {
   ir::ExprPtr lower_element(P::ReferenceContext* reference);
   ir::ExprPtr lower_number(antlr4::Token* token);
   std::vector<ir::ExprPtr> lower_arguments(P::ArgumentsContext* arguments);
+  ir::ExprPtr lower_argument(P::ArgumentContext* argument);
   std::optional<std::int64_t> whole_number(antlr4::Token* token, std::int64_t most);
   double number_value(const antlr4::Token& token) const;
 
@@ -67,6 +68,7 @@ class Lowering {
   std::optional<ir::ControlVerb> jog_verb(const Jog& jog);
   void add_jogs(const Jog& jog, std::vector<ir::ExprPtr> motors, ir::Body& out);
   void lower_start(P::ProgramControlContext* control, ir::Body& out);
+  void lower_text_out(P::ProgramControlContext* control, ir::Body& out);
   void lower_pset(P::SimpleStatementContext* statement, ir::Body& out);
   std::vector<ir::ExprPtr> lower_number_list(P::NumberListContext* list);
   std::vector<ir::ExprPtr> lower_plc_list(P::PlcListContext* list);
