@@ -207,7 +207,7 @@ online
   | '#' numberList? ('->' ({sameLine()}? axisDefinition)?)?
   | (COORD | '&') numberList?
   | LETTER_M NUMBER (',' NUMBER)? '->' ({sameLine()}? pointerTarget)?
-  | reference '->' pointerTarget
+  | reference '->' ({sameLine()}? pointerTarget)?
   | assignment
   | onlineListAssignment
   | lvalue

@@ -1,14 +1,12 @@
-// The vocabulary of the bytecode: names and rows made from opcode.def, function.def and element.def, and the names of the
+// The vocabulary of the bytecode: names and rows made from opcode.def and function.def, and the names of the
 // few enumerations that are written out in bytecode.h.
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <string>
-#include <unordered_map>
 
 #include "compiler/bytecode/bytecode.h"
 #include "compiler/bytecode/control.h"
-#include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/opcode.h"
 
@@ -22,7 +20,6 @@ constexpr std::size_t index_of(Enum value) {
 
 constexpr std::size_t kOpcodeCount = index_of(Opcode::kCount);
 constexpr std::size_t kFunctionCount = index_of(Function::kCount);
-constexpr std::size_t kElementCount = index_of(ElementId::kCount);
 
 constexpr std::array<OpcodeInfo, kOpcodeCount> kOpcodes = {{
 #define OPCODE(Name, text, format, meaning) {text, OperandFormat::k##format, meaning},
@@ -42,18 +39,8 @@ constexpr std::array<FunctionInfo, kFunctionCount> kFunctions = {{
 #undef FUNCTION
 }};
 
-constexpr std::array<ElementInfo, kElementCount> kElements = {{
-#define ELEMENT(Id, name, count0, count1, count2, Type, default_value, unit, Access, Simulation, meaning) \
-  {name, {count0, count1, count2}, ElementType::k##Type, default_value, unit, ElementAccess::k##Access,   \
-   ElementSimulation::k##Simulation, meaning},
-#include "compiler/bytecode/element.def"
-#undef ELEMENT
-}};
-
 constexpr OpcodeInfo kUnknownOpcode = {"?", OperandFormat::kNone, "no such instruction"};
 constexpr FunctionInfo kUnknownFunction = {"?", "", 0, false, "no such function"};
-constexpr ElementInfo kUnknownElement = {
-    "?", {0, 0, 0}, ElementType::kDouble, 0, "", ElementAccess::kStatus, ElementSimulation::kStored, "no such element"};
 
 constexpr std::array<std::string_view, kAxisCount> kAxisNames = {
     "A",  "B",  "C",  "U",  "V",  "W",  "X",  "Y",  "Z",  "AA", "BB", "CC", "DD", "EE", "FF", "GG",
@@ -91,19 +78,6 @@ std::string_view name_at(const std::array<std::string_view, N>& names, std::size
   return index < N ? names[index] : std::string_view("?");
 }
 
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char ch) { return static_cast<char>(std::tolower(ch)); });
-  return result;
-}
-
-std::unordered_map<std::string, ElementId> make_element_names() {
-  std::unordered_map<std::string, ElementId> names;
-  for (std::size_t i = 0; i < kElementCount; ++i) names.emplace(lower_case(kElements[i].name), static_cast<ElementId>(i));
-  return names;
-}
-
 }  // namespace
 
 std::string_view axis_name(int axis_index) {
@@ -138,22 +112,6 @@ const OpcodeInfo& opcode_info(Opcode opcode) {
 
 const FunctionInfo& function_info(Function function) {
   return index_of(function) < kFunctionCount ? kFunctions[index_of(function)] : kUnknownFunction;
-}
-
-const ElementInfo& element_info(ElementId id) {
-  return index_of(id) < kElementCount ? kElements[index_of(id)] : kUnknownElement;
-}
-
-int ElementInfo::index_count() const {
-  int count = 0;
-  while (count < kMaxElementIndices && index_counts[count] > 0) ++count;
-  return count;
-}
-
-ElementId find_element(std::string_view pattern) {
-  static const std::unordered_map<std::string, ElementId> names = make_element_names();
-  const auto found = names.find(lower_case(pattern));
-  return found == names.end() ? kNoElement : found->second;
 }
 
 }  // namespace pmac::bytecode

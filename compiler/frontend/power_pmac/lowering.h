@@ -48,6 +48,7 @@ class Lowering {
   void lower_declaration(P::DeclarationContext* declaration, ir::Body& out);
   ir::StmtPtr lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition);
   void lower_label(P::LabelContext* label, ir::Body& out);
+  void lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out);
 
   // motion (lower_motion.cpp)
   void lower_motion_line(P::MotionLineContext* line, ir::Body& out);
@@ -86,6 +87,7 @@ class Lowering {
   void lower_address(P::OnlineContext* online, ir::Body& out);
   void lower_axis_definition(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_command(P::OnlineContext* online, ir::Body& out);
+  void lower_pointer_query(P::OnlineContext* online, ir::Body& out);
   void lower_command(std::string_view word, source::Span span, ir::Body& out);
   void lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out);
   void lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out);
