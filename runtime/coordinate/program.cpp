@@ -107,6 +107,8 @@ Flow CoordSystem::home_zero(Thread& thread, int motor) {
   return stop_item(thread, AfterRest::kHomeZero);
 }
 
+Flow CoordSystem::wait_for_interrupt(Thread& thread) { return stop_item(thread, AfterRest::kNextInterrupt); }
+
 Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command) {
   const auto cs = static_cast<unsigned>(number_);
   ensure_sequence(machine_.now_ms);
