@@ -233,13 +233,48 @@ bool is_motor_verb(ControlVerb v) {
 
 bool is_plc_verb(ControlVerb v) { return v >= ControlVerb::kEnablePlc && v <= ControlVerb::kStepPlc; }
 
+/// What the list * stands for: motors that are in use, coordinate systems with motors or a program, PLC programs that exist.
+std::vector<double> everything(Machine::State& s, ControlVerb verb) {
+  std::vector<double> numbers;
+  if (is_plc_verb(verb)) {
+    for (const auto& [number, program] : s.plc_programs) numbers.push_back(number);
+  } else if (is_motor_verb(verb)) {
+    for (const Motor& m : s.motors)
+      if (m.in_use) numbers.push_back(m.number);
+  } else {
+    for (int n = 0; n < bytecode::kMaxCoords; ++n)
+      if (!s.coord(n).motors().empty() || s.coord(n).program_running()) numbers.push_back(n);
+  }
+  return numbers;
+}
+
+/// The verb for everything of its kind; the first refusal is the answer. A verb that the program has to wait for, once for each, is refused.
+Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
+  std::vector<double> one(arguments.begin(), arguments.end());
+  Flow result = Flow::kContinue;
+  for (const double number : everything(s, verb)) {
+    if (result == Flow::kSuspend) {
+      refusal = fmt::format("error #21: ILLEGAL PARAMETER: the program waits for {}; list the motors instead of *", control_verb_name(verb));
+      return Flow::kContinue;
+    }
+    one[0] = number;
+    std::string reason;
+    const Flow flow = execute_control(s, runner, verb, one, reason);
+    if (flow != Flow::kContinue) result = flow;
+    if (refusal.empty()) refusal = reason;
+  }
+  return result;
+}
+
 }  // namespace
 
 Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
+  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer;
+  if (all) return execute_for_all(s, runner, verb, arguments, refusal);
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);
-  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) return not_simulated(call);
+  if (verb >= ControlVerb::kReportPointer) return not_simulated(call);
   return coord_verb(call);
 }
 

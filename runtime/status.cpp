@@ -90,6 +90,7 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
     case ElementId::kPlcRunning: return s.plcs[a.index[0]].running;
     default: break;
   }
+  if (bytecode::element_info(a.id).type == bytecode::ElementType::kSymbol) return encode_address(a);  // Sys.pushm is where it is
   if (belongs_to(a.id, ElementId::kMotorServoCtrl, ElementId::kMotorCoord)) return motor_value(s, a.id, s.motors[a.index[0]]);
   if (belongs_to(a.id, ElementId::kCoordTa, ElementId::kCoordCdPos)) return coord_value(s, a);
   return s.elements.get(a);
