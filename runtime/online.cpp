@@ -148,6 +148,11 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kRetrace:
       call.refusal = "error #20: ILLEGAL CMD: retracing the path backwards (<) is not simulated; > and r go on forwards";
       return Flow::kContinue;
+    case ControlVerb::kPread:
+    case ControlVerb::kVread:
+    case ControlVerb::kDread:
+    case ControlVerb::kFread:
+    case ControlVerb::kTread: call.refusal = read_axes(call.s, number, call.verb, call.argument(1), call.runner.thread); return Flow::kContinue;
     case ControlVerb::kPmatch:
     case ControlVerb::kPclr:
     case ControlVerb::kPstore:
@@ -288,6 +293,7 @@ Flow plc_verb(const Call& call) {
     case ControlVerb::kEnablePlc:
       if (plc.runner.get() == &call.runner) break;  // enabling itself changes nothing
       plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
+      plc.runner->thread.ends_scans = true;
       plc.runner->thread.begin(buffer->second);
       plc.active = plc.running = true;
       break;
@@ -296,6 +302,28 @@ Flow plc_verb(const Call& call) {
     case ControlVerb::kResumePlc: plc.running = plc.active; break;
     default: return not_simulated(call);
   }
+  return Flow::kContinue;
+}
+
+/// The pass of the program ends here; queued commands are executed at the end of every pass.
+Flow send_all_commands(const Call& call) {
+  Runner& r = call.runner;
+  if (call.s.queued.empty() || r.kind == RunnerKind::kOnline) return Flow::kContinue;
+  return r.kind == RunnerKind::kMotionProgram ? call.s.coord(r.number).wait_for_interrupt(r.thread) : Flow::kSuspend;
+}
+
+/// M5->: the definition as it would be written.
+Flow report_pointer(const Call& call) {
+  const double number = call.argument(0);
+  if (!(number >= 0 && number < bytecode::kMCount)) {
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: M{}", number);
+    return Flow::kContinue;
+  }
+  const int m = static_cast<int>(number);
+  const PointerEntry& pointer = call.s.pointers.at(m);
+  const bool is_element = pointer.definition.kind == bytecode::PointerKind::kElement;
+  const std::string element = is_element ? element_text(pointer.element) : std::string();
+  call.s.answer(fmt::format("M{}->{}", m, definition_text(pointer.definition, element)));
   return Flow::kContinue;
 }
 
@@ -347,7 +375,9 @@ Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::s
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);
-  if (verb >= ControlVerb::kReportPointer) return not_simulated(call);
+  if (verb == ControlVerb::kSendAllCommands) return send_all_commands(call);
+  if (verb == ControlVerb::kReportPointer) return report_pointer(call);
+  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) return not_simulated(call);
   return coord_verb(call);
 }
 

@@ -84,6 +84,7 @@ class CoordSystem {
   bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
+  Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
@@ -93,6 +94,8 @@ class CoordSystem {
   Flow pause_from_inside(Thread& thread) { return stop_item(thread, AfterRest::kPause); }
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
+  /// Comes to rest and goes on at the next real-time interrupt.
+  Flow wait_for_interrupt(Thread& thread);
   /// The same from the program: comes to rest, then it happens.
   Flow change_positions(Thread& thread, const PositionChange& change);
 
@@ -121,6 +124,8 @@ class CoordSystem {
   /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
   const AxisVector& calculated_position() const { return program_uu_; }
   AxisVector commanded_position(double time_ms);
+  /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
+  AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
 
  private:

@@ -51,7 +51,9 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
     case Opcode::kAxisWord:
       block_.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), r[instruction.a]);
       return Flow::kContinue;
-    case Opcode::kBlockEnd: return end_block(thread);
+    case Opcode::kBlockEnd: return block_.empty() ? Flow::kContinue : end_block(thread);
+    case Opcode::kStepBegin:
+    case Opcode::kStepEnd: return Flow::kContinue;
     case Opcode::kDwell:
     case Opcode::kDelay: {
       const double ms = r[instruction.a];
@@ -120,6 +122,8 @@ Flow CoordSystem::home_zero(Thread& thread, int motor) {
   home_motor_ = motor;
   return stop_item(thread, AfterRest::kHomeZero);
 }
+
+Flow CoordSystem::wait_for_interrupt(Thread& thread) { return stop_item(thread, AfterRest::kNextInterrupt); }
 
 /// A command of program coordinates in machine coordinates.
 std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
