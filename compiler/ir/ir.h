@@ -120,8 +120,10 @@ struct SetMode { MoveMode mode = MoveMode::kLinear; };
 struct SetParameter { MotionParameter parameter = MotionParameter::kTa; ExprPtr value; };
 /// abs, inc: axes is a mask; centres: R was in the list.
 struct SetAbsInc { bool absolute = true; std::uint32_t axes = 0; bool centres = false; };
-struct SetFrax { std::uint32_t axes = 0; bool secondary = false; };
-struct SetNormal { ExprPtr vector[3]; };
+/// off: the axes are no feed-rate axes any more; else they are the feed-rate axes.
+struct SetFrax { std::uint32_t axes = 0; bool secondary = false; bool off = false; };
+/// second_set: of the axes XX YY ZZ.
+struct SetNormal { ExprPtr vector[3]; bool second_set = false; };
 struct Word { WordKind kind = WordKind::kTarget; int index = 0; ExprPtr value; Span span; };
 struct Move { std::vector<Word> words; };
 struct Dwell { ExprPtr time_ms; };

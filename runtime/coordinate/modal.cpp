@@ -21,6 +21,7 @@ void fill_circle(const ModalState& modal, const OpenBlock& block, const AxisVect
   command.clockwise = modal.mode == MoveMode::kCircle1 || modal.mode == MoveMode::kCircle3;
   command.second_set = modal.mode == MoveMode::kCircle3 || modal.mode == MoveMode::kCircle4;
   command.normal = modal.normal;
+  if (command.second_set) command.normal = modal.second_normal;
   command.has_radius = block.has_radius;
   command.radius_uu = block.radius;
   const int first_word = command.second_set ? 3 : 0;

@@ -74,6 +74,11 @@ void print_tree(const SyntaxTree& tree, antlr4::tree::ParseTree* node, int depth
 
 }  // namespace
 
+std::vector<std::string> Frontend::ambiguities(const std::string& name, std::string text) {
+  state_->names.local.clear();
+  return find_ambiguities(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
+}
+
 std::string Frontend::tree(const std::string& name, std::string text) {
   const auto tree = parse(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
   std::string out;

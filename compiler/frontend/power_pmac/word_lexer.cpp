@@ -299,7 +299,11 @@ std::string describe_token(std::size_t type) {
     case T::AXIS: case T::LETTER_C: return "an axis";
     case T::STRING: return "a text in quotation marks";
     case T::VAR: case T::LETTER_M: return "a variable";
+    case T::ELSE_IF: return "'else'";
     case T::LINE_END: return "the end of the line";
+    case T::NORMAL_VECTOR: return "a vector such as K-1";
+    case T::PSET_AXIS: return "an axis with its position";
+    case T::CODE: return "a code letter";
     case antlr4::Token::EOF: return "the end of the file";
     default: return "'" + lower(vocabulary.getSymbolicName(type)) + "'";
   }
