@@ -108,7 +108,9 @@ simpleStatement
 
 labelNumber : NUMBER | '(' expression ')' | NAME ;
 callTarget : NUMBER | '(' expression ')' | NAME ('.' MEMBER)? ;
-arguments : '(' (expression (',' expression)*)? ')' ;
+arguments : '(' (argument (',' argument)*)? ')' ;
+/// &P100, &Table(0): the address of variables, for functions of vectors, matrices and texts.
+argument : '&' lvalue | expression ;
 readLetter : AXIS | VECTOR | CODE | LETTER | VAR | LETTER_C | LETTER_D | LETTER_F | LETTER_I | LETTER_M | LETTER_N | LETTER_R | NAME ;
 
 // --- motion -------------------------------------------------------------------------------------------------------------------
@@ -151,6 +153,7 @@ assignment
   : lvalue operation=(ASSIGN | '+=' | '-=' | '*=' | '/=' | '%=' | '&=' | '|=' | '^=' | '>>=' | '<<='
            | SYNC_ASSIGN | '+==' | '-==' | '*==' | '/==' | '&==' | '|==' | '^==') {sameLine()}? expression (',' expression)*
   | lvalue step=('++' | '--' | '++=' | SYNC_DECREMENT)
+  | call=NAME arguments
   ;
 
 lvalue : variable | reference ;
@@ -194,8 +197,8 @@ programControl
   | PMATCH
   | JOG jogAction
   | JOGRET numberList? ('=' data)?
-  | CMD STRING
-  | SEND NUMBER? ','? STRING (',' expression)*
+  | CMD STRING (',' argument)*
+  | SEND NUMBER? ','? STRING (',' argument)*
   | SENDALLCMDS
   ;
 startItem : NUMBER (':' programName)? | ':' programName | NAME ;
@@ -218,7 +221,7 @@ online
   | '#' numberList? ('->' ({sameLine()}? axisDefinition)?)?
   | (COORD | '&') numberList?
   | LETTER_M NUMBER (',' NUMBER)? '->' ({sameLine()}? pointerTarget)?
-  | reference '->' pointerTarget
+  | reference '->' ({sameLine()}? pointerTarget)?
   | assignment
   | onlineListAssignment
   | lvalue

@@ -95,6 +95,7 @@ std::string InstructionCheck::sync_target(const SyncTarget& target) const {
 std::string InstructionCheck::function_operands() const {
   const auto function = static_cast<Function>(in_.b());
   if (function >= Function::kCount) return "no such function";
+  if (function_info(function).uses_memory != (in_.op == Opcode::kMemoryFunction)) return "a function of another kind";
   return both(registers(in_.a), registers(in_.c(), static_cast<unsigned>(function_info(function).argument_count)));
 }
 

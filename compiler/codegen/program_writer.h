@@ -57,6 +57,9 @@ class ProgramWriter {
   std::int32_t element_ref(const ir::Element& element) { return tables_.element(make_element_ref(element)); }
   void binary_into(const ir::Binary& node, Register destination);
   void condition_into(const ir::Expr& expr, Register destination);
+  void call_into(const ir::FunctionCall& call, Register destination);
+  void address_into(const ir::AddressOf& address, Register destination);
+  void format_values(const std::vector<const ir::Expr*>& values);
   void branch(const ir::Expr& condition, bool sense, Target& target);
 
   // write_statement.cpp
@@ -91,6 +94,7 @@ class ProgramWriter {
   void write(const ir::Move& node, const source::Span& span);
   void write(const ir::Dwell& node, const source::Span& span);
   void write(const ir::Delay& node, const source::Span& span);
+  void write(const ir::Evaluate& node, const source::Span& span);
   void write(const ir::Control& node, const source::Span& span);
   void write(const ir::Command& node, const source::Span& span);
   void write(const ir::Send& node, const source::Span& span);

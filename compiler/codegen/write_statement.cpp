@@ -312,8 +312,23 @@ void ProgramWriter::write(const ir::Control& node, const source::Span&) {
   emit_abc(Opcode::kControl, static_cast<Register>(node.verb), first, count);
 }
 
-void ProgramWriter::write(const ir::Command& node, const source::Span&) { emit_imm(Opcode::kCommand, 0, tables_.string(node.text)); }
-void ProgramWriter::write(const ir::Send& node, const source::Span&) { emit_imm(Opcode::kSend, static_cast<Register>(node.port), tables_.string(node.text)); }
+void ProgramWriter::write(const ir::Evaluate& node, const source::Span&) { value_into(*node.value, take()); }
+
+static std::vector<const ir::Expr*> pointers(const std::vector<ir::ExprPtr>& values) {
+  std::vector<const ir::Expr*> all;
+  for (const ir::ExprPtr& value : values) all.push_back(value.get());
+  return all;
+}
+
+void ProgramWriter::write(const ir::Command& node, const source::Span&) {
+  format_values(pointers(node.values));
+  emit_imm(Opcode::kCommand, 0, tables_.string(node.text));
+}
+
+void ProgramWriter::write(const ir::Send& node, const source::Span&) {
+  format_values(pointers(node.values));
+  emit_imm(Opcode::kSend, static_cast<Register>(node.port), tables_.string(node.text));
+}
 void ProgramWriter::write(const ir::AddressCoord& node, const source::Span&) { emit_imm(Opcode::kAddressCoord, value(*node.number), 0); }
 void ProgramWriter::write(const ir::AddressMotor& node, const source::Span&) { emit_imm(Opcode::kAddressMotor, value(*node.number), 0); }
 

@@ -62,7 +62,8 @@ struct Binary { Operator op; ExprPtr left, right; };
 struct FunctionCall { bytecode::Function function = bytecode::kNoFunction; std::vector<ExprPtr> arguments; };
 
 /// &P100, &Table(0), &Sys.Cdata[40]: where the variables or bytes of a vector, matrix or text begin.
-struct AddressOf { ExprPtr place; };
+/// end, filled by sema: number behind the last variable of the declared array; 0: no such array.
+struct AddressOf { ExprPtr place; std::int64_t end = 0; };
 
 struct Expr {
   Span span;
@@ -129,6 +130,9 @@ struct Move { std::vector<Word> words; };
 struct Dwell { ExprPtr time_ms; };
 struct Delay { ExprPtr time_ms; };
 
+/// A function that is called for what it does: strcpy(&P100, "on").
+struct Evaluate { ExprPtr value; };
+
 /// One verb for one thing, or for each of several: see ControlVerb. Missing arguments are nan.
 struct Control { ControlVerb verb{}; std::vector<ExprPtr> arguments; };
 /// text: a printf format where values follow it.
@@ -149,7 +153,7 @@ struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its
 
 struct Stmt {
   Span span;
-  std::variant<Block, Assign, AssignSeries, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, CodeLine, ReadWords, LineCondition, SetFlag, Cycle, StepBlock, SetMode, SetParameter,
+  std::variant<Block, Assign, AssignSeries, Evaluate, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, CodeLine, ReadWords, LineCondition, SetFlag, Cycle, StepBlock, SetMode, SetParameter,
                SetAbsInc, SetFrax, SetNormal, Move, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
                Globals, Report, OpenBuffer, ExecuteAtOnce>
       node;

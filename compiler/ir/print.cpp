@@ -160,6 +160,7 @@ class StmtPrinter {
   }
   void operator()(const Dwell& node) { line(fmt::format("dwell {}", print(*node.time_ms))); }
   void operator()(const Delay& node) { line(fmt::format("delay {}", print(*node.time_ms))); }
+  void operator()(const Evaluate& node) { line(print(*node.value)); }
   void operator()(const Control& node) {
     const auto number = node.arguments.empty() || !node.arguments[0] ? std::nullopt : constant_value(*node.arguments[0]);
     std::string arguments = list(node.arguments);

@@ -261,13 +261,14 @@ void Binder::bind(ir::Control& node, const source::Span&) {
     auto* use = std::get_if<ir::NameUse>(&argument->node);
     if (use && is_plc_verb(node.verb)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
     else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
+    else if (use && node.verb == ControlVerb::kReportPointer) bind_program_name(*argument, SymbolKind::kPointer, "pointer");
     else bind_value(*argument);
   }
   check_control_number(node);
 }
 
 void Binder::check_control_number(const ir::Control& node) {
-  if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset) return;
+  if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset || node.verb == ControlVerb::kReportPointer) return;
   const auto value = ir::constant_value(*node.arguments[0]);
   if (!value) return;
   const bool motor = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;

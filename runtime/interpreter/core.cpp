@@ -242,6 +242,12 @@ dispatch_next:
     r[pc->a] = apply_function(function, {&RC, count}, host_);
     NEXT();
   }
+  OP(LoadAddress) : SAVE(); LEAVE_UNLESS(load_address(*pc, r));
+  OP(LimitAddress) : limit_address(*pc, r); NEXT();
+  OP(LoadByteAddress) : SAVE(); LEAVE_UNLESS(load_byte_address(*pc, r));
+  OP(LoadText) : load_text(*pc, r); NEXT();
+  OP(FormatValue) : SAVE(); LEAVE_UNLESS(add_format_value(r[pc->a]));
+  OP(MemoryFunction) : SAVE(); LEAVE_UNLESS(memory_function(*pc, r, budget));
 
   OP(Jump) : JUMP();
   OP(JumpIfTrue) : if (r[pc->a] != 0.0) JUMP(); NEXT();
@@ -315,8 +321,8 @@ dispatch_next:
   MOTION(StepBegin);
   MOTION(StepEnd);
   OP(Control) : HOST(host_.control(thread_, static_cast<bytecode::ControlVerb>(pc->a), {r + pc->b(), pc->c()}));
-  OP(Command) : HOST(host_.command(thread_, thread_.program_.module->strings[static_cast<std::size_t>(pc->imm)]));
-  OP(Send) : HOST(host_.send(thread_, pc->a, thread_.program_.module->strings[static_cast<std::size_t>(pc->imm)]));
+  OP(Command) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
+  OP(Send) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
   ONLINE(AddressCoord);
   ONLINE(AddressMotor);
   ONLINE(DefineAxis);

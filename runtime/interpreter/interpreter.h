@@ -101,7 +101,7 @@ class Thread {
   void reset_jump_backs() { jump_backs_ = 0; }
   /// True from begin() until the program has ended or failed. Locals of the top frame stay readable after the end.
   bool active() const { return static_cast<bool>(program_); }
-  void stop() { program_ = {}; frames_.clear(); base_ = 0; forget_lines(); }
+  void stop() { program_ = {}; frames_.clear(); base_ = 0; forget_lines(); format_values_.clear(); }
 
   const ProgramHandle& program() const { return program_; }     // the buffer that executes now (a called subprogram too)
   const ProgramHandle& top_program() const { return top_; }      // the buffer that was begun
@@ -138,6 +138,7 @@ class Thread {
   bool came_to_end_ = false;
   std::int64_t jump_backs_ = 0;
   std::optional<Fault> host_fault_;
+  std::vector<double> format_values_;   // of the next text with a format
 
   /// A letter-number word of the line that a frame executes.
   struct LineWord { double value = 0; std::uint8_t letter = 0; bool taken = false; };

@@ -28,6 +28,7 @@ bool Thread::stand_at_top(std::int64_t label) {
   came_to_end_ = false;
   jump_backs_ = 0;
   host_fault_.reset();
+  format_values_.clear();
   const bytecode::LabelEntry* entry = label < 0 ? nullptr : bytecode::find_label(*program_.program, label);
   pc_ = entry == nullptr ? 0 : entry->pc;
   return label < 0 || entry != nullptr;

@@ -143,7 +143,11 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kRegD: return Instruction::with_imm(op, reg(), imm_below(kDCount));
     case OperandFormat::kRegRegClass: return Instruction::with_bc(op, reg(), reg(), below(8));
     case OperandFormat::kRegElement: return Instruction::with_imm(op, reg(), imm_below(module_.element_refs.size()));
-    case OperandFormat::kFunc: return Instruction::with_bc(op, reg(), below(static_cast<unsigned>(Function::kCount)), reg(3));
+    case OperandFormat::kFunc: {
+      Function function = any(Function::kCount);
+      while (function_info(function).uses_memory != (op == Opcode::kMemoryFunction)) function = any(Function::kCount);
+      return Instruction::with_bc(op, reg(), static_cast<unsigned>(function), reg(9));
+    }
     case OperandFormat::kJump:
     case OperandFormat::kRegJump: return Instruction::with_imm(op, reg(), static_cast<std::int32_t>(pc + 1 + below(size - pc - 1)));
     case OperandFormat::kLoop:

@@ -129,6 +129,11 @@ void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
 }
 
 void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
+  if (assignment->call) {
+    ir::NameUse use{text_of(assignment->call), true, lower_arguments(assignment->arguments())};
+    const source::Span span = span_of(assignment);
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   ir::Assign result;
   result.target = lower_lvalue(assignment->lvalue());
   if (assignment->step) {
@@ -168,7 +173,21 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
     arguments.push_back(nullptr);
     return add_control(verb, span, std::move(arguments), out);
   }
+  if (statement->PREAD() || statement->VREAD() || statement->DREAD() || statement->FREAD() || statement->TREAD()) return lower_axis_query(statement, out);
   not_supported(span, lower_case(text_of(statement->start)));
+}
+
+/// pread, vread(X,Y): axis values of the coordinate system to D variables.
+void Lowering::lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out) {
+  using Verb = ir::ControlVerb;
+  const Verb verb = statement->PREAD() ? Verb::kPread : statement->VREAD() ? Verb::kVread : statement->DREAD() ? Verb::kDread : statement->FREAD() ? Verb::kFread : Verb::kTread;
+  const source::Span span = span_of(statement);
+  std::vector<ir::ExprPtr> arguments;
+  arguments.push_back(nullptr);
+  bool centres = false;
+  arguments.push_back(statement->axisList() ? ir::make_number(axis_mask(statement->axisList(), &centres), span) : nullptr);
+  if (centres) diagnostics_.error("PM2009", span, "R is no axis");
+  add_control(verb, span, std::move(arguments), out);
 }
 
 ir::StmtPtr Lowering::lower_jump(P::SimpleStatementContext* statement) {

@@ -30,6 +30,7 @@ class Lowering {
   ir::ExprPtr lower_element(P::ReferenceContext* reference);
   ir::ExprPtr lower_number(antlr4::Token* token);
   std::vector<ir::ExprPtr> lower_arguments(P::ArgumentsContext* arguments);
+  ir::ExprPtr lower_argument(P::ArgumentContext* argument);
   std::optional<std::int64_t> whole_number(antlr4::Token* token, std::int64_t most);
   double number_value(const antlr4::Token& token) const;
 
@@ -47,6 +48,7 @@ class Lowering {
   void lower_declaration(P::DeclarationContext* declaration, ir::Body& out);
   ir::StmtPtr lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition);
   void lower_label(P::LabelContext* label, ir::Body& out);
+  void lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out);
 
   // motion (lower_motion.cpp)
   void lower_motion_line(P::MotionLineContext* line, ir::Body& out);
@@ -77,6 +79,7 @@ class Lowering {
   std::optional<ir::ControlVerb> jog_verb(const Jog& jog);
   void add_jogs(const Jog& jog, std::vector<ir::ExprPtr> motors, ir::Body& out);
   void lower_start(P::ProgramControlContext* control, ir::Body& out);
+  void lower_text_out(P::ProgramControlContext* control, ir::Body& out);
   void lower_pset(P::SimpleStatementContext* statement, ir::Body& out);
   std::vector<ir::ExprPtr> lower_number_list(P::NumberListContext* list);
   std::vector<ir::ExprPtr> lower_plc_list(P::PlcListContext* list);
@@ -98,6 +101,7 @@ class Lowering {
   void lower_address(P::OnlineContext* online, ir::Body& out);
   void lower_axis_definition(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_command(P::OnlineContext* online, ir::Body& out);
+  void lower_pointer_query(P::OnlineContext* online, ir::Body& out);
   void lower_command(std::string_view word, source::Span span, ir::Body& out);
   void lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out);
   void lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out);
