@@ -112,3 +112,14 @@ TEST_CASE("a text without values stands as it is", "[functions]") {
   bench.run("enable plc 1", limits);
   CHECK(bench.answers == Lines{"[send 1] 100% done"});
 }
+
+TEST_CASE("transformations: product, inverse and determinant, by hand", "[functions]") {
+  // T1: a quarter turn, X' = -Y, Y' = X, and 10 added to X. T2: twice as long in X. T2 after T1: X' = 2 (10 - Y), Y' = X.
+  const std::string set = "tinit(1) tinit(2)\nTdata[1].Diag[6]=0 Tdata[1].Diag[7]=0 Tdata[1].XYZ[0]=-1 Tdata[1].XYZ[2]=1 Tdata[1].Bias[6]=10 Tdata[2].Diag[6]=2\n";
+  CHECK(said(set + "N = tprop(3, 2, 1)\nsend1 \"%g %g %g %g %g\", N, Tdata[3].XYZ[0], Tdata[3].XYZ[2], Tdata[3].Bias[6], Tdata[3].Bias[7]") == Lines{"2 -2 1 20 0"});
+  // inverse of T1: X = Y', Y = 10 - X'
+  CHECK(said(set + "N = tinv(4, 1)\nsend1 \"%g %g %g %g %g\", N, Tdata[4].XYZ[0], Tdata[4].XYZ[2], Tdata[4].Bias[6], Tdata[4].Bias[7]") == Lines{"1 1 -1 0 10"});
+  CHECK(said("tinit(1) Tdata[1].Diag[6]=0 N = tinv(1, 1)\nsend1 \"%g %g %g\", N, tdet(1), Tdata[1].Diag[7]") == Lines{"0 0 1"});
+  CHECK(said("send1 \"%g %g\", tinit(255), tdet(255)") == Lines{"1 1"});
+  CHECK(fault_of("N = tinit(256)") == "tinit: there is no Tdata[256]; the numbers are 0 to 255");
+}
