@@ -36,6 +36,11 @@ class Binder {
   void bind(ir::Locals& node, const source::Span& span);
   void bind(ir::Jump& node, const source::Span& span);
   void bind(ir::Call& node, const source::Span& span);
+  void bind(ir::CodeLine& node, const source::Span& span);
+  void bind(ir::LineCondition& node, const source::Span& span);
+  void bind(ir::SetFlag& node, const source::Span& span);
+  void bind(ir::Cycle& node, const source::Span& span);
+  void check_flag(const ir::Expr& flag);
   void bind(ir::SetParameter& node, const source::Span& span);
   void bind(ir::SetNormal& node, const source::Span& span);
   void bind(ir::Move& node, const source::Span& span);

@@ -106,7 +106,7 @@ std::string CoordSystem::match_positions(double time_ms) {
     if (const std::string reason = forward_routine(motor_mu, matched); !reason.empty())
       return "error #39: NOT READY TO RUN: forward kinematics: " + reason;
   calculated_uu_ = matched;
-  return {};
+  return rename_position();
 }
 
 bool CoordSystem::axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu) {
@@ -121,7 +121,9 @@ AxisVector CoordSystem::commanded_position(double time_ms) {
   for (int motor : motors_) motor_mu[static_cast<std::size_t>(motor)] = machine_.motors[static_cast<std::size_t>(motor)].position_at(time_ms);
   AxisVector axis_uu = calculated_uu_;
   axes_from_motors(motor_mu, axis_uu);
-  return axis_uu;
+  AxisVector unknown;
+  unknown.fill(std::nan(""));
+  return frame_.to_program(machine_.elements, axis_uu).value_or(unknown);
 }
 
 AxisVector CoordSystem::commanded_velocity_uu_ms(double time_ms) {

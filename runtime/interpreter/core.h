@@ -88,7 +88,8 @@ class InterpreterCore {
 
   // core_calls.cpp: leave and enter frames; the thread holds the place afterwards.
   bool find_label(double number, std::uint32_t& pc);
-  bool push_frame();
+  bool push_frame(std::size_t first_word);
+  bool push_frame() { return push_frame(thread_.line_begin_); }
   void open_frame(const bytecode::Program& caller, const bytecode::Program& routine);
   Next gosub(std::uint32_t target);
   Next callsub(std::uint32_t target);
@@ -96,6 +97,25 @@ class InterpreterCore {
   Next call_constant(const Instruction& in);
   Next call_computed(double target);
   Next return_from_routine();
+
+  // core_lines.cpp: lines of words, code letters, flags, canned cycles.
+  void set_line_word(const Instruction& in, double value);
+  bool is_taken(unsigned word) const;
+  Next require_taken(unsigned word);
+  void read_words(double letters);
+  bool dispatches_feed();
+  Next call_code(unsigned letter, double number, unsigned first_word);
+  Next set_feed(double feed);
+  bool flag_mask(double bit, std::uint64_t& mask);
+  bool test_flag(const Instruction& in, double* r);
+  Next change_flag(double bit, bool set);
+  Next define_cycle(double target);
+  Next call_cycle();
+  bool in_cycle_block() const { return (thread_.cycle_.armed || thread_.cycle_.called) && thread_.code_depth_ == 0; }
+  Next collect_cycle_word(const Instruction& in, double value);
+  Next end_cycle_block();
+  Next enter_cycle();
+  Next leave_cycle();
 
   static std::int64_t clamp_budget(std::uint64_t budget) {
     const auto most = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());

@@ -75,8 +75,12 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* label = statement->label()) return lower_label(label, out);
   if (auto* declaration = statement->declaration()) return lower_declaration(declaration, out);
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
-  if (auto* code = statement->codeLine()) return not_supported(span_of(code), fmt::format("the code letter {}", text_of(code->start)));
+  if (auto* code = statement->codeLine()) return lower_code_line(code, out);
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
+  if (auto* call = statement->callStatement()) {
+    ir::NameUse use{text_of(call->start), true, lower_arguments(call->arguments())};
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
   if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
 }
@@ -126,11 +130,6 @@ void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
 }
 
 void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
-  if (assignment->call) {
-    ir::NameUse use{text_of(assignment->call), true, lower_arguments(assignment->arguments())};
-    const source::Span span = span_of(assignment);
-    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
-  }
   ir::Assign result;
   result.target = lower_lvalue(assignment->lvalue());
   if (assignment->step) {
@@ -153,8 +152,11 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
   if (statement->CONTINUE()) return out.push_back(ir::make_stmt(span, ir::Continue{}));
   if (statement->RETURN()) return out.push_back(ir::make_stmt(span, ir::Return{}));
   if (statement->STOP()) return out.push_back(ir::make_stmt(span, ir::Stop{}));
-  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(lower_jump(statement));
-  if (statement->CALL()) return out.push_back(lower_call(statement));
+  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(with_words(lower_jump(statement), statement->lineWord()));
+  if (statement->CALL()) return out.push_back(with_words(lower_call(statement), statement->lineWord()));
+  if (statement->READ()) return out.push_back(lower_read(statement));
+  if (statement->BSTART() || statement->BSTOP()) return out.push_back(ir::make_stmt(span, ir::StepBlock{statement->BSTART() != nullptr}));
+  if (lower_flags_and_cycles(statement, out)) return;
   if (statement->DWELL()) return out.push_back(ir::make_stmt(span, ir::Dwell{lower_data(statement->data(0))}));
   if (statement->DELAY()) return out.push_back(ir::make_stmt(span, ir::Delay{lower_data(statement->data(0))}));
   if (statement->PSET()) return lower_pset(statement, out);

@@ -61,6 +61,16 @@ class Lowering {
   std::uint32_t axis_mask(P::AxisListContext* list, bool* centres);
   int axis_index(antlr4::Token* token);
 
+  // lines of words (lower_lines.cpp)
+  void lower_code_line(P::CodeLineContext* line, ir::Body& out);
+  ir::LineWord lower_line_word(P::LineWordContext* word);
+  /// The statement with the words behind it; the statement itself where there are none.
+  ir::StmtPtr with_words(ir::StmtPtr statement, const std::vector<P::LineWordContext*>& words);
+  ir::StmtPtr lower_move_with_words(P::MoveContext* move);
+  bool lower_flags_and_cycles(P::SimpleStatementContext* statement, ir::Body& out);
+  ir::StmtPtr lower_read(P::SimpleStatementContext* statement);
+  void check_word_count(const std::vector<ir::LineWord>& words, source::Span span);
+
   // programs, motors, coordinate systems (lower_control.cpp)
   void lower_program_control(P::ProgramControlContext* control, ir::Body& out);
   /// Parts of a jog command; distance and trigger may be missing.
