@@ -59,6 +59,7 @@ statement
   | motionLine
   | codeLine
   | assignment
+  | callStatement
   | simpleStatement
   | onlineInBuffer
   ;
@@ -153,8 +154,10 @@ assignment
   : lvalue operation=(ASSIGN | '+=' | '-=' | '*=' | '/=' | '%=' | '&=' | '|=' | '^=' | '>>=' | '<<='
            | SYNC_ASSIGN | '+==' | '-==' | '*==' | '/==' | '&==' | '|==' | '^==') {sameLine()}? expression (',' expression)*
   | lvalue step=('++' | '--' | '++=' | SYNC_DECREMENT)
-  | call=NAME arguments
   ;
+
+/// A function that is called for what it stores: strcpy(&P100, "on").
+callStatement : NAME arguments ;
 
 lvalue : variable | reference ;
 variable : (VAR | LETTER_C | LETTER_D | LETTER_I | LETTER_M | LETTER_R) (NUMBER | '(' expression ')') ;
