@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/frontend/power_pmac/macro_definition.h"
 #include "compiler/ir/ir.h"
 #include "compiler/source/source.h"
 
@@ -20,6 +21,9 @@ class Frontend {
   void know_name(const std::string& name);
   /// Names that declarations of all texts so far mention, right or wrong.
   std::vector<std::string> known_names() const;
+
+  /// Every #define so far, in order.
+  const std::vector<MacroDefinition>& macro_definitions() const;
 
   ir::Unit read(const std::string& name, std::string text);
   /// One token a line: line:column, kind, text.

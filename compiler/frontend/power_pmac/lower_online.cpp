@@ -65,6 +65,7 @@ void Lowering::lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffe
   else if (name) buffer.number = whole_number(token_of(name->NUMBER()), most).value_or(0);
   else if (!header->NUMBER().empty()) buffer.number = whole_number(token_of(header->NUMBER(0)), bytecode::kMaxCoords - 1).value_or(0);
   if (name && buffer.kind == ProgramKind::kProg && buffer.number == 0 && buffer.name.empty()) diagnostics_.error("PM3008", span_of(name), "program numbers begin with 1; program 0 is the rotary buffer");
+  buffer.name_span = span_of(name);
   buffer.parameters = lower_parameters(header->parameters());
 }
 

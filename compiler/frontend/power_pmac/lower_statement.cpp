@@ -224,6 +224,7 @@ void Lowering::lower_declaration(P::DeclarationContext* declaration, ir::Body& o
     auto& node = std::get<ir::DefinePointer>(statement->node);
     node.name = definition.name;
     node.name_span = span_of(token_of(pointer->NAME()));
+    node.declaration = span;
     if (pointer->NUMBER()) node.size = static_cast<int>(whole_number(token_of(pointer->NUMBER()), bytecode::kMCount).value_or(0));
     out.push_back(std::move(statement));
   }
