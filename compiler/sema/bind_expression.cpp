@@ -36,21 +36,6 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-bytecode::Function find_function(std::string_view name) {
-  const std::string wanted = lower(name);
-  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::Function::kCount); ++i)
-    if (bytecode::function_info(static_cast<bytecode::Function>(i)).name == wanted) return static_cast<bytecode::Function>(i);
-  return bytecode::kNoFunction;
-}
-
-/// Functions of the controller that this compiler knows by name only.
-bool is_unsupported_function(std::string_view name) {
-  constexpr std::string_view kNames[] = {"sin_cos", "sincos", "sincosd", "sum", "sumprod", "vcopy", "vmadd", "vscale", "mdet", "minv", "mmadd", "mminor", "mmul",
-                                         "msolve", "mtrans", "tinit", "tdet", "tinv", "tprop", "memcpy", "memset", "sprintf", "strcpy", "strcat", "strcmp",
-                                         "strlen", "strncpy", "strncat", "strncmp", "strtod", "strtolower", "strtoupper", "strstr", "sscanf"};
-  return std::find(std::begin(kNames), std::end(kNames), lower(name)) != std::end(kNames);
-}
-
 std::optional<std::int64_t> number_suffix(std::string_view text) {
   std::int64_t value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -108,7 +93,11 @@ bool Binder::is_assignable(const ir::Expr& expr) const {
 void Binder::bind_expr(ir::Expr& expr) {
   if (auto* variable = std::get_if<ir::Variable>(&expr.node)) return bind_variable(*variable, expr.span);
   if (std::holds_alternative<ir::NameUse>(expr.node)) return bind_name(expr);
-  if (auto* element = std::get_if<ir::Element>(&expr.node)) return bind_element(*element, expr.span);
+  if (auto* element = std::get_if<ir::Element>(&expr.node)) {
+    bind_element(*element, expr.span);
+    if (element->element != bytecode::kNoElement && !element->address) note_uncomputed_element(*element, expr.span);
+    return;
+  }
   if (auto* unary = std::get_if<ir::Unary>(&expr.node)) return unary->op == Operator::kNot ? bind_condition(*unary->operand) : bind_value(*unary->operand);
   if (auto* binary = std::get_if<ir::Binary>(&expr.node)) {
     const bool logical = binary->op == Operator::kAnd || binary->op == Operator::kOr;
@@ -117,6 +106,7 @@ void Binder::bind_expr(ir::Expr& expr) {
   }
   if (auto* call = std::get_if<ir::FunctionCall>(&expr.node))
     for (ir::ExprPtr& argument : call->arguments) bind_value(*argument);
+  if (std::holds_alternative<ir::AddressOf>(expr.node)) diagnostics_.error("PM3070", expr.span, "an address stands only among the arguments of functions, send and cmd that work on variables");
 }
 
 void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
@@ -133,11 +123,11 @@ void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
 
 void Binder::bind_name(ir::Expr& expr) {
   auto use = std::move(std::get<ir::NameUse>(expr.node));
+  if (use.has_arguments && is_function(use.name) && !is_declared(use.name)) return bind_function(expr, use);
   for (ir::ExprPtr& argument : use.arguments) bind_value(*argument);
   if (const auto local = locals_.find(use.name); local != locals_.end()) return bind_indexed(expr, use, VariableClass::kL, local->second.number, local->second.size);
   if (bind_declared_name(expr, use)) return;
   if (!use.has_arguments && bind_kinematic_name(expr, use.name)) return;
-  if (use.has_arguments && bind_function(expr, use)) return;
   report_unknown(use.name, expr.span, use.has_arguments ? "function or array" : "name");
   expr.node = std::move(use);
 }
@@ -186,25 +176,6 @@ bool Binder::bind_kinematic_name(ir::Expr& expr, std::string_view name) {
   return false;
 }
 
-bool Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
-  if (is_unsupported_function(use.name)) {
-    diagnostics_.error("PM5001", expr.span, fmt::format("the function {} is not supported yet", lower(use.name)));
-    expr.node = ir::Number{0};
-    return true;
-  }
-  const bytecode::Function function = find_function(use.name);
-  if (function == bytecode::kNoFunction) return false;
-  const auto wanted = static_cast<std::size_t>(bytecode::function_info(function).argument_count);
-  if (use.arguments.size() != wanted) {
-    diagnostics_.error("PM3048", expr.span, fmt::format("{} takes {} argument(s), not {}", lower(use.name), wanted, use.arguments.size()));
-    use.arguments.resize(wanted);
-    for (ir::ExprPtr& argument : use.arguments)
-      if (!argument) argument = ir::make_number(0, expr.span);
-  }
-  expr.node = ir::FunctionCall{function, std::move(use.arguments)};
-  return true;
-}
-
 // --- elements ---------------------------------------------------------------------------------------------------------------
 
 void Binder::bind_element(ir::Element& element, const source::Span& span) {
@@ -212,6 +183,8 @@ void Binder::bind_element(ir::Element& element, const source::Span& span) {
   element.element = bytecode::find_element(element.pattern);
   if (element.element == bytecode::kNoElement) return report_unknown_element(element, span);
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
+  const bool address_only = info.type == bytecode::ElementType::kStructure && !element.address;
+  if (address_only) diagnostics_.error("PM3055", span, fmt::format("{} is a structure; name one of its elements, or {}.a for its address", info.name, info.name));
   for (std::size_t i = 0; i < element.indices.size(); ++i) check_element_index(*element.indices[i], info.index_counts[i], info.name);
 }
 
@@ -248,6 +221,14 @@ void Binder::note_stored_element(const ir::Element& element, const source::Span&
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
   if (info.simulation != bytecode::ElementSimulation::kStored || !project_.reported_elements.insert(std::string(info.name)).second) return;
   diagnostics_.warning("PM6010", span, fmt::format("the simulation stores {} and does not act on it", info.name));
+}
+
+/// Once for each element, where the program reads a status that stays at its default here.
+void Binder::note_uncomputed_element(const ir::Element& element, const source::Span& span) {
+  if (!settings_.extra_warnings) return;
+  const bytecode::ElementInfo& info = bytecode::element_info(element.element);
+  if (info.simulation != bytecode::ElementSimulation::kUnknown || !project_.reported_elements.insert(std::string(info.name)).second) return;
+  diagnostics_.warning("PM6012", span, fmt::format("the simulation does not compute {}; it reads {}", info.name, info.default_value));
 }
 
 void Binder::report_unknown(std::string_view name, const source::Span& span, std::string_view what) {

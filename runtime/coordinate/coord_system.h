@@ -2,10 +2,12 @@
 // motor positions. It decides when the program calculates on (ahead of motion) and when it waits (dwell, rapid, jump-back rule).
 //
 //   idle --run--> calculating <--> waiting for room (enough moves ahead)
-//                     |  dwell, rapid, loop without moves, end
+//                     |  dwell, rapid, loop without moves, pause, end
 //                     v
-//                 coming to rest --> dwelling | rapid move | next interrupt | idle
+//                 coming to rest --> dwelling | rapid move | next interrupt | paused | idle
 //
+// Everything on the path happens by the coordinate system's own clock (time_base.h); times of the pipeline and of its motors' profiles
+// are that clock's, times of events are the machine's.
 // Source: calculation ahead of motion, User's Manual p681-706; see docs/motion.md.
 #pragma once
 
@@ -16,7 +18,10 @@
 #include <vector>
 
 #include "kinematics/kinematics.h"
+#include "compiler/bytecode/control.h"
 #include "runtime/coordinate/modal.h"
+#include "runtime/coordinate/time_base.h"
+#include "runtime/coordinate/transform.h"
 #include "runtime/machine.h"
 #include "runtime/motion/pipeline.h"
 #include "runtime/runner.h"
@@ -33,6 +38,9 @@ struct SyncEntry {
   std::uint64_t move_id = 0;   // executed when this move, dwell or delay starts
   bytecode::SourceLine source;
 };
+
+/// pmatch, pset (axis and value), pclr, pstore or pload.
+struct PositionChange { bytecode::ControlVerb verb; int axis = 0; double value = 0; };
 
 class CoordSystem {
  public:
@@ -51,21 +59,43 @@ class CoordSystem {
 
   // --- program control; each answers a refusal ("error #22: ...") or empty -----------------------------------------------
   std::string begin(std::uint32_t number, std::int64_t label);
+  /// Starts at the pointer, or goes on after a pause or a hold.
   std::string run(double time_ms);
+  std::string resume(double time_ms);
+  /// One move, dwell or delay; a program that executes is paused.
+  std::string step(double time_ms);
+  /// Finishes what is calculated and waits at a programmed point.
+  std::string pause(double time_ms);
+  std::string hold(double time_ms);
+  /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
+  std::string set_time_base(double time_ms, double rate);
+  const TimeBase& time_base() const { return time_base_; }
+  /// A motor that belongs here gets a profile at time_ms: the clock it runs by.
+  const TimeBase* clock_for_motion(double time_ms);
   void abort(double time_ms);
   /// A run-time error: aborts, sets ErrorStatus and reports.
   void fail(double time_ms, Fault fault);
-  bool program_running() const { return phase_ != Phase::kIdle; }
+  bool program_running() const { return phase_ != Phase::kIdle && phase_ != Phase::kPaused; }
+  /// Executing, or waiting to go on.
+  bool program_active() const { return phase_ != Phase::kIdle; }
+  /// Executing, and going on by itself: not held, not at 0 %.
+  bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
+  Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
   void stop_program_from_inside() { stop_requested_ = true; }
+  Flow pause_from_inside(Thread& thread) { return stop_item(thread, AfterRest::kPause); }
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
+  /// Comes to rest and goes on at the next real-time interrupt.
+  Flow wait_for_interrupt(Thread& thread);
+  /// The same from the program: comes to rest, then it happens.
+  Flow change_positions(Thread& thread, const PositionChange& change);
 
   // --- time ---------------------------------------------------------------------------------------------------------------
   /// Next time at which service() has something to do; kNever if none.
@@ -76,25 +106,44 @@ class CoordSystem {
   bool on_path() const { return on_path_; }
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
   const std::vector<int>& path_motors() const { return path_map_.motors; }
+  /// Reports the moves that have begun and whose end is still to come: with the end that is planned where they go_on, else with time_ms.
+  void report_unfinished(double time_ms, bool go_on);
 
   // --- positions -----------------------------------------------------------------------------------------------------------
   /// pmatch: axis positions from the motors' commanded positions. Answers a refusal or empty.
   std::string match_positions(double time_ms);
+  /// pmatch, pset, pclr, pstore, pload while no program runs. Answers a refusal or empty.
+  std::string change_positions(double time_ms, const PositionChange& change);
   bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu);
   /// Positions of served_motors(), through the inverse routine where there is one.
   std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
   std::vector<int> served_motors() { return motor_map().motors; }
   std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
-  const AxisVector& calculated_position() const { return calculated_uu_; }
+  /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
+  const AxisVector& calculated_position() const { return program_uu_; }
   AxisVector commanded_position(double time_ms);
+  /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
+  AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
 
  private:
-  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid };
-  enum class AfterRest { kDwell, kRapid, kHomeZero, kNextInterrupt, kEnd };
+  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kPaused };
+  enum class AfterRest { kDwell, kRapid, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
+
+  // control.cpp
+  std::string start(double time_ms);
+  std::string why_not_ready() const;
+  std::string go_on_after_pause(double time_ms, bool one_step);
+  void pause_here(double time_ms);
+  void drop_program();
+  void clock_changed(double time_ms);
+  std::string slope_of(bytecode::ElementId slew, double& slope_per_ms) const;
 
   // program.cpp
   void calculate(double time_ms);
+  void go_on(double time_ms);
+  double motors_end_ms() const;
+  void sample_by_clock(double start_ms, double period_ms, int count, std::span<double> position_mu);
   int commands_wanted() const;
   bool enough_ahead(double time_ms) const;
   double next_calculation_ms(double time_ms) const;
@@ -103,6 +152,8 @@ class CoordSystem {
   void settle_path(double time_ms);
   void finish_program();
   Flow end_block(Thread& thread);
+  std::optional<Fault> set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source);
+  std::optional<Fault> place(motion::MotionCommand& command);
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
@@ -113,8 +164,13 @@ class CoordSystem {
   void perform_due(double time_ms);
   void perform_up_to(std::uint64_t move_id);
   void record(const MoveRecord& move);
+  void record_executed(double time_ms);
   motion::PipelineConfig config();
   motion::MotorMap motor_map();
+
+  // offsets.cpp
+  std::optional<Fault> select_transform(double number, bytecode::SourceLine source);
+  std::string rename_position();
 
   // positions.cpp
   std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
@@ -133,7 +189,10 @@ class CoordSystem {
   Phase phase_ = Phase::kIdle;
   AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
-  bool stop_requested_ = false;
+  bool stop_requested_ = false, pause_requested_ = false;
+  bool stepping_ = false;           // pauses after one item
+  std::vector<double> paused_mu_;   // [motors_]
+  TimeBase time_base_;
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
@@ -142,18 +201,25 @@ class CoordSystem {
   double sampled_to_ms_ = 0, sequence_start_ms_ = 0;
   double calculated_at_ms_ = -kNever;  // last calculation pass
   int moves_without_time_ = 0;
-  AxisVector calculated_uu_{};
+  ProgramFrame frame_;
+  AxisVector program_uu_{};     // end of the last calculated move in program coordinates
+  AxisVector placed_uu_{};      // program coordinates of the pipeline's calculated position
+  AxisVector calculated_uu_{};  // the pipeline's, in the coordinates of the axis definitions
+  PositionChange position_change_{};
   OpenBlock block_;
   double dwell_ms_ = 0;
   int home_motor_ = -1;
   bytecode::SourceLine item_source_;
   AxisVector rapid_target_uu_{};
-  double item_start_ms_ = 0;
+  double item_start_ms_ = 0, rapid_length_uu_ = 0;
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };
   std::deque<PendingMove> pending_moves_;
   std::vector<motion::MoveTiming> timings_;
+  struct ExecutedMove { motion::MoveTiming timing; std::string_view mode; bytecode::SourceLine source; };
+  std::deque<ExecutedMove> executed_;  // planned in full; reported when they end
+  std::vector<double> sample_run_;     // of sample(), kept so that a block costs no allocation
   std::deque<SyncEntry> sync_;
   std::vector<motion::SyncTime> sync_times_;
   std::deque<motion::SyncTime> due_;   // ascending

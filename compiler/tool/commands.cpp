@@ -1,0 +1,78 @@
+#include "compiler/tool/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "compiler/bytecode/object_file.h"
+#include "compiler/explain.h"
+#include "compiler/tool/inputs.h"
+#include "compiler/tool/report.h"
+
+namespace pmac::pmacc {
+namespace {
+
+void print(std::string_view text) {
+  std::cout << text << std::flush;
+  if (!std::cout) throw UsageError("cannot write the output");
+}
+
+int explain(const std::string& code) {
+  const std::string text = compiler::explain(code);
+  if (text.empty()) throw UsageError(fmt::format("no message has the code {}", code));
+  print(text);
+  return kOk;
+}
+
+std::string stage_text(compiler::Session& session, const std::string& stage, const std::vector<compiler::InputFile>& files) {
+  std::string text;
+  if (stage == "files") {
+    for (const compiler::InputFile& file : files) text += file.name + "\n";
+    return text;
+  }
+  if (stage == "ir") return compiler::emit_ir(session, files);
+  if (stage == "tokens" || stage == "tree") {
+    for (const compiler::InputFile& file : files) text += stage == "tokens" ? compiler::emit_tokens(session, file) : compiler::emit_tree(session, file);
+  } else if (const auto module = session.compile(files)) {
+    text = stage == "bytecode" ? bytecode::disassemble(*module) : compiler::emit_symbols(*module);
+  }
+  return text;
+}
+
+int emit(compiler::Session& session, const Arguments& arguments, const std::vector<compiler::InputFile>& files) {
+  print(stage_text(session, arguments.emit, files));
+  return report(session, arguments) ? kUserError : kOk;
+}
+
+int compile(compiler::Session& session, const Arguments& arguments, const std::vector<compiler::InputFile>& files) {
+  const auto module = session.compile(files);
+  if (report(session, arguments) || !module) return kUserError;
+  if (arguments.output.empty() || arguments.check) return kOk;
+  refuse_to_overwrite(arguments.files, arguments.output);
+  const std::vector<std::uint8_t> bytes = bytecode::save(*module);
+  write_file(arguments.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return kOk;
+}
+
+void set_up_diagnostics(source::Diagnostics& diagnostics, const Arguments& arguments) {
+  diagnostics.set_error_limit(arguments.error_limit);
+  diagnostics.set_warnings_are_errors(std::find(arguments.warnings.begin(), arguments.warnings.end(), "error") != arguments.warnings.end());
+}
+
+}  // namespace
+
+int run(const Arguments& arguments) {
+  if (!arguments.explain.empty()) return explain(arguments.explain);
+  if (arguments.emit == "elements") {
+    print(compiler::emit_elements());
+    return kOk;
+  }
+  if (arguments.files.empty()) throw UsageError("no input files; try pmacc --help");
+  compiler::Session session(compiler_options(arguments));
+  set_up_diagnostics(session.diagnostics(), arguments);
+  const std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
+  return arguments.emit.empty() ? compile(session, arguments, files) : emit(session, arguments, files);
+}
+
+}  // namespace pmac::pmacc

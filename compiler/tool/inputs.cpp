@@ -1,0 +1,68 @@
+#include "compiler/tool/inputs.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "compiler/project/project.h"
+#include "compiler/tool/options.h"
+
+namespace pmac::pmacc {
+namespace {
+
+void add_project(const std::string& name, compiler::Session& session, std::vector<compiler::InputFile>& files) {
+  try {
+    compiler::project::Project project = compiler::project::read_project(name, session.sources(), session.diagnostics());
+    if (files.empty()) session.set_variable_starts(project.starts);
+    for (compiler::InputFile& file : project.files) files.push_back(std::move(file));
+  } catch (const compiler::project::Unreadable& problem) {
+    throw UsageError(problem.what());
+  }
+}
+
+}  // namespace
+
+std::string read_file(const std::string& name) {
+  if (name == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  std::error_code error;
+  if (std::filesystem::is_directory(name, error)) throw UsageError(fmt::format("cannot read {}: it is a directory", name));
+  std::ifstream stream(name, std::ios::binary);
+  if (!stream) throw UsageError(fmt::format("cannot read {}", name));
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) throw UsageError(fmt::format("cannot read {}", name));
+  return text;
+}
+
+std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& names, compiler::Session& session) {
+  std::vector<compiler::InputFile> files;
+  for (const std::string& name : names) {
+    if (compiler::project::is_project(name)) add_project(name, session, files);
+    else files.push_back({name == "-" ? "<stdin>" : name, read_file(name)});
+  }
+  return files;
+}
+
+void write_file(const std::string& name, std::string_view bytes) {
+  const std::string temporary = fmt::format("{}.{}.tmp", name, ::getpid());
+  std::ofstream stream(temporary, std::ios::binary);
+  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(temporary, name, error);
+  if (stream && !error) return;
+  std::filesystem::remove(temporary, error);
+  throw UsageError(fmt::format("cannot write {}", name));
+}
+
+void refuse_to_overwrite(const std::vector<std::string>& sources, const std::string& output) {
+  for (const std::string& source : sources) {
+    std::error_code ignored;
+    if (!output.empty() && std::filesystem::equivalent(source, output, ignored)) throw UsageError(output + " is a source file; choose another name for the object file");
+  }
+}
+
+}  // namespace pmac::pmacc
