@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "compiler/source/encoding.h"
+
 namespace pmac::pmacc {
 namespace {
 
@@ -26,7 +28,7 @@ std::string text_of(const fs::path& file) {
   std::error_code error;
   if (fs::file_size(file, error) > kLargestHeader || error) return {};
   std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return source::decode_text({std::istreambuf_iterator<char>(stream), {}});
 }
 
 bool is_project(const fs::path& folder) {
