@@ -62,6 +62,11 @@ class CoordSystem {
   /// Starts at the pointer, or goes on after a pause or a hold.
   std::string run(double time_ms);
   std::string resume(double time_ms);
+  /// cx: starts a program that is in no buffer.
+  std::string execute(ProgramHandle program, double time_ms);
+  /// open rotary: adds lines to program 0 of the coordinate system. One that waits for lines goes on with them.
+  std::string append_rotary(ProgramHandle lines, double time_ms);
+  void clear_rotary() { rotary_.clear(); }
   /// One move, dwell or delay; a program that executes is paused.
   std::string step(double time_ms);
   /// Finishes what is calculated and waits at a programmed point.
@@ -132,6 +137,12 @@ class CoordSystem {
 
   // control.cpp
   std::string start(double time_ms);
+  std::string start_at(const ProgramHandle& program, std::int64_t label, double time_ms);
+
+  // rotary.cpp
+  std::string start_rotary(double time_ms);
+  bool goes_on_in_rotary();
+  bool rotary_ends_here();
   std::string why_not_ready() const;
   std::string go_on_after_pause(double time_ms, bool one_step);
   void pause_here(double time_ms);
@@ -185,6 +196,10 @@ class CoordSystem {
   Runner runner_, kinematics_;
   ProgramHandle pointed_;
   std::int64_t pointed_label_ = -1;
+  enum class RotaryState { kNone, kExecutes, kWaits };  // kWaits: all lines are done, the next ones start at once
+  std::deque<ProgramHandle> rotary_;                    // lines as they were appended; the first ones execute
+  bool rotary_pointed_ = false;                         // b0
+  RotaryState rotary_state_ = RotaryState::kNone;
 
   Phase phase_ = Phase::kIdle;
   AfterRest after_rest_ = AfterRest::kEnd;

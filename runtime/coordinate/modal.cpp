@@ -20,6 +20,7 @@ bool is_circle(MoveMode mode) { return mode >= MoveMode::kCircle1 && mode <= Mov
 void fill_circle(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu, motion::MotionCommand& command) {
   command.clockwise = modal.mode == MoveMode::kCircle1 || modal.mode == MoveMode::kCircle3;
   command.second_set = modal.mode == MoveMode::kCircle3 || modal.mode == MoveMode::kCircle4;
+  if (command.second_set) command.normal = modal.second_normal;
   command.has_radius = block.has_radius;
   command.radius_uu = block.radius;
   const int first_word = command.second_set ? 3 : 0;

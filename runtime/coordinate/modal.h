@@ -25,7 +25,7 @@ struct ModalState {
   std::uint32_t absolute_axes = kAllAxes;
   bool absolute_center = false;
   std::uint32_t feed_axes = kDefaultFeedAxes, feed_axes2 = 0;
-  std::array<double, 3> normal{0, 0, -1};
+  std::array<double, 3> normal{0, 0, -1}, second_normal{0, 0, -1};  // of X Y Z, of XX YY ZZ
   int compensation_side = 0;      // ccmode: 0 off, 1 left, 2 right
   double compensation_radius_uu = 0;
 };

@@ -39,11 +39,16 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
     case Opcode::kSetFrax:
       (instruction.a == 1 ? modal.feed_axes2 : modal.feed_axes) = mask;
       return Flow::kContinue;
-    case Opcode::kSetNormal:
-      modal.normal = {r[instruction.a], r[instruction.a + 1u], r[instruction.a + 2u]};
-      if (!(std::hypot(modal.normal[0], modal.normal[1], modal.normal[2]) > 0))
+    case Opcode::kClearFrax:
+      (instruction.a == 1 ? modal.feed_axes2 : modal.feed_axes) &= ~mask;
+      return Flow::kContinue;
+    case Opcode::kSetNormal: {
+      std::array<double, 3>& normal = instruction.imm == 1 ? modal.second_normal : modal.normal;
+      normal = {r[instruction.a], r[instruction.a + 1u], r[instruction.a + 2u]};
+      if (!(std::hypot(normal[0], normal[1], normal[2]) > 0))
         return give_up(thread, {FaultKind::kBadTarget, thread.source(), "the plane normal has no direction"});
       return Flow::kContinue;
+    }
     case Opcode::kSetMotion:
       if (auto fault = set_parameter(static_cast<bytecode::MotionParameter>(instruction.b()), r[instruction.a], thread.source()))
         return give_up(thread, *fault);
@@ -286,7 +291,13 @@ void CoordSystem::calculate(double time_ms) {
     case RunStop::kSuspended: return;  // motion() has set what to wait for
     case RunStop::kBudget:
     case RunStop::kJumpBack: fault = come_to_rest(time_ms, AfterRest::kNextInterrupt); break;
-    case RunStop::kEnded: fault = come_to_rest(time_ms, AfterRest::kEnd); break;
+    case RunStop::kEnded:
+      if (goes_on_in_rotary()) {
+        resume_ms_ = time_ms;
+        return;
+      }
+      fault = come_to_rest(time_ms, AfterRest::kEnd);
+      break;
     case RunStop::kFault: fault = std::move(result.fault); break;
   }
   if (fault) fail(time_ms, std::move(*fault));
@@ -348,6 +359,7 @@ void CoordSystem::settle_path(double time_ms) {
 }
 
 void CoordSystem::finish_program() {
+  if (rotary_ends_here()) return;
   drop_program();
   pointed_label_ = -1;
 }
