@@ -40,7 +40,7 @@ std::string CoordSystem::run(double time_ms) {
 
 std::string CoordSystem::start(double time_ms) {
   if (!pointed_) return "error #39: NOT READY TO RUN: no program selected; use b{number} first";
-  if (std::string refusal = why_not_ready(); !refusal.empty()) return refusal;
+  if (std::string refusal = why_not_ready(true); !refusal.empty()) return refusal;
   if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
   if (motor_map().motors.empty())
     machine_.warn(pointed_.program->source, fmt::format("coordinate system {} has no motors; the program runs dry", number_));
@@ -57,8 +57,8 @@ std::string CoordSystem::start(double time_ms) {
   return {};
 }
 
-/// What the motors lack that a program needs.
-std::string CoordSystem::why_not_ready() const {
+/// What the motors lack that a move needs.
+std::string CoordSystem::why_not_ready(bool at_rest) const {
   for (int motor : motors_) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
     if (m.coord != number_) continue;
@@ -68,7 +68,7 @@ std::string CoordSystem::why_not_ready() const {
     if (machine_.elements.get(ElementId::kMotorPhaseFound, n) == 0)
       return fmt::format("error #44: MOTOR NOT PHASED: motor {}; give #{}$ first", motor, motor);
     if (!m.closed_loop) return fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}; give #{}j/ or enable first", motor, motor);
-    if (m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
+    if (at_rest && m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
   }
   return {};
 }
@@ -97,7 +97,7 @@ void CoordSystem::pause_here(double time_ms) {
 }
 
 std::string CoordSystem::go_on_after_pause(double time_ms, bool one_step) {
-  if (std::string refusal = why_not_ready(); !refusal.empty()) return refusal;
+  if (std::string refusal = why_not_ready(true); !refusal.empty()) return refusal;
   for (std::size_t i = 0; i < motors_.size() && i < paused_mu_.size(); ++i) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motors_[i])];
     if (m.coord == number_ && std::abs(m.position_at(time_ms) - paused_mu_[i]) > kSamePlace_mu)
@@ -216,6 +216,7 @@ void CoordSystem::drop_program() {
   pending_moves_.clear();
   executed_.clear();
   block_ = {};
+  home_motors_.clear();
   pause_requested_ = stepping_ = false;
   phase_ = Phase::kIdle;
   resume_ms_ = kNever;

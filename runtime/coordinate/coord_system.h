@@ -22,11 +22,10 @@
 #include "runtime/coordinate/time_base.h"
 #include "runtime/machine.h"
 #include "runtime/motion/pipeline.h"
+#include "runtime/motion/profile.h"
 #include "runtime/runner.h"
 
 namespace pmac::runtime {
-
-inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A synchronous assignment in the queue. element_address belongs to target.element where the class is kElement.
 struct SyncEntry {
@@ -34,6 +33,14 @@ struct SyncEntry {
   ElementAddress element;
   double value = 0;
   std::uint64_t move_id = 0;   // executed when this move, dwell or delay starts
+  bytecode::SourceLine source;
+};
+
+/// A rapid block: where to, and which axes stop at a trigger (their distances from it).
+struct RapidMove {
+  AxisVector target_uu{};
+  std::uint32_t trigger_axes = 0;
+  AxisVector trigger_uu{};
   bytecode::SourceLine source;
 };
 
@@ -81,9 +88,13 @@ class CoordSystem {
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
+  /// A move block of a PLC program: rapid whatever the mode, and nobody waits for it.
+  Flow plc_move(Thread& thread, const OpenBlock& block);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
   void stop_program_from_inside() { stop_requested_ = true; }
   Flow pause_from_inside(Thread& thread) { return stop_item(thread, AfterRest::kPause); }
+  /// home in the program: comes to rest, and the motors that were named (also: one more follows) look for their triggers together.
+  Flow home_motor(Thread& thread, int motor, bool also);
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
 
@@ -112,12 +123,12 @@ class CoordSystem {
   void observe(motion::StageObservers observers);
 
  private:
-  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHomeZero, kNextInterrupt, kPause, kEnd };
+  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
+  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kNextInterrupt, kPause, kEnd };
 
   // control.cpp
   std::string start(double time_ms);
-  std::string why_not_ready() const;
+  std::string why_not_ready(bool at_rest) const;
   std::string go_on_after_pause(double time_ms, bool one_step);
   void pause_here(double time_ms);
   void drop_program();
@@ -143,6 +154,13 @@ class CoordSystem {
   void ensure_sequence(double time_ms);
   void start_dwell(double time_ms);
   void start_rapid(double time_ms);
+  RapidMove rapid_move(const ModalState& modes, const OpenBlock& block, bytecode::SourceLine source) const;
+  std::optional<Fault> move_rapid(double time_ms, const RapidMove& move);
+  std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
+                                        std::vector<motion::JogParameters>& parameters) const;
+  void report_rapid(double time_ms);
+  void start_homing(double time_ms);
+  void motors_arrived(double time_ms);
   void collect_timings();
   void perform_due(double time_ms);
   void perform_up_to(std::uint64_t move_id);
@@ -183,10 +201,12 @@ class CoordSystem {
   AxisVector calculated_uu_{};
   OpenBlock block_;
   double dwell_ms_ = 0;
+  std::vector<int> home_motors_;
   int home_motor_ = -1;
   bytecode::SourceLine item_source_;
-  AxisVector rapid_target_uu_{};
-  double item_start_ms_ = 0, rapid_length_uu_ = 0;
+  RapidMove rapid_;
+  double item_start_ms_ = 0, rapid_start_ms_ = 0, rapid_length_uu_ = 0;
+  bool rapid_open_ = false;         // its motors move; reported when they have come to rest
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace pmac::runtime {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostPieces = 100'000;  // older ones are forgotten; only times of a move that lasts through more would suffer
 
 }  // namespace

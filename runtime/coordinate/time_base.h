@@ -10,9 +10,12 @@
 // defaults. The controller changes its time base by steps, once a servo cycle; here it is the straight line through them.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace pmac::runtime {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class TimeBase {
  public:
