@@ -100,8 +100,8 @@ Flow program_verb(const Call& call, CoordSystem& coord, int number) {
     case ControlVerb::kRun: call.refusal = coord.run(now); break;
     case ControlVerb::kResume: call.refusal = coord.resume(now); break;
     case ControlVerb::kForward: call.refusal = coord.resume(now); break;
-    case ControlVerb::kHold:
-    case ControlVerb::kQuickStop: call.refusal = coord.hold(now); break;
+    case ControlVerb::kHold: call.refusal = coord.hold(now); break;
+    case ControlVerb::kQuickStop: call.refusal = coord.quick_stop(now); break;
     case ControlVerb::kPause:
       if (inside) return coord.pause_from_inside(r.thread);
       call.refusal = coord.pause(now);

@@ -67,6 +67,7 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
     case ElementId::kCoordLookAheadActive:
       return c.lookahead_buffer > 0 && s.elements.get(ElementId::kCoordLHDistance, a.index[0]) > 1 &&
              s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
+    case ElementId::kCoordLookAheadStop: return c.quick_stopped();
     case ElementId::kCoordMoveMode: return static_cast<double>(c.modal.mode);
     case ElementId::kCoordNumMotors: return static_cast<double>(c.motors().size());
     case ElementId::kCoordDesPos: return c.commanded_position(s.now_ms)[a.index[1]];

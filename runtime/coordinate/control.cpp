@@ -126,8 +126,14 @@ std::string CoordSystem::resume(double time_ms) {
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kNone || hold == TimeBase::Hold::kResuming)
     return fmt::format("error #39: NOT READY TO RUN: the program of coordinate system {} is neither paused nor held", number_);
+  if (quick_stopped() && on_path_ && lookahead_) {
+    quick_stopped_ = false;
+    begin_shaping(Shaping::kFaster);
+    return {};
+  }
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordFeedHoldSlew, slope_per_ms); !refusal.empty()) return refusal;
+  quick_stopped_ = false;
   time_base_.release(time_ms, slope_per_ms);
   clock_changed(time_ms);
   return {};
@@ -161,6 +167,9 @@ std::string CoordSystem::hold(double time_ms) {
   if (std::string refusal = slope_of(ElementId::kCoordFeedHoldSlew, slope_per_ms); !refusal.empty()) return refusal;
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kHeld || hold == TimeBase::Hold::kSlowing) return {};
+  shaping_ = Shaping::kNone;
+  shape_at_ms_ = kNever;
+  time_base_.shape_end(false);
   time_base_.hold(time_ms, slope_per_ms);
   clock_changed(time_ms);
   return {};
@@ -217,7 +226,9 @@ void CoordSystem::drop_program() {
   executed_.clear();
   block_ = {};
   home_motors_.clear();
-  pause_requested_ = stepping_ = false;
+  shaping_ = Shaping::kNone;
+  shape_at_ms_ = kNever;
+  pause_requested_ = stepping_ = quick_stopped_ = false;
   phase_ = Phase::kIdle;
   resume_ms_ = kNever;
 }

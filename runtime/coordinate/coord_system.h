@@ -69,6 +69,9 @@ class CoordSystem {
   /// Finishes what is calculated and waits at a programmed point.
   std::string pause(double time_ms);
   std::string hold(double time_ms);
+  /// Inside lookahead as fast as the motors' limits allow, otherwise a feed hold.
+  std::string quick_stop(double time_ms);
+  bool quick_stopped() const { return quick_stopped_ || shaping_ == Shaping::kSlower; }
   /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
   std::string set_time_base(double time_ms, double rate);
   const TimeBase& time_base() const { return time_base_; }
@@ -123,6 +126,7 @@ class CoordSystem {
   void observe(motion::StageObservers observers);
 
  private:
+  enum class Shaping { kNone, kSlower, kFaster };
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
   enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kNextInterrupt, kPause, kEnd };
 
@@ -134,6 +138,13 @@ class CoordSystem {
   void drop_program();
   void clock_changed(double time_ms);
   std::string slope_of(bytecode::ElementId slew, double& slope_per_ms) const;
+
+  // quick_stop.cpp
+  void begin_shaping(Shaping shaping);
+  bool keeps_limits(double path_ms, double step_ms);
+  double step_toward(double path_ms, double last_ms, double wanted_ms);
+  void shape_rate(double time_ms);
+  void end_shaping(double time_ms);
 
   // program.cpp
   void calculate(double time_ms);
@@ -190,6 +201,10 @@ class CoordSystem {
   bool stepping_ = false;           // pauses after one item
   std::vector<double> paused_mu_;   // [motors_]
   TimeBase time_base_;
+  Shaping shaping_ = Shaping::kNone;      // quick stop, or going on after it
+  bool quick_stopped_ = false;
+  double shape_at_ms_ = kNever;           // next servo tick of it
+  std::vector<double> before_mu_, here_mu_, there_mu_;   // [path motor] at the tick before, at this one, at one that is tried
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;

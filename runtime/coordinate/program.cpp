@@ -142,6 +142,7 @@ void CoordSystem::ensure_sequence(double time_ms) {
   const double path_ms = clock_for_motion(time_ms)->path_at(time_ms);
   pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
+  before_mu_.clear();
   sampled_to_ms_ = sequence_start_ms_ = path_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
 }
@@ -197,7 +198,7 @@ double CoordSystem::next_event_ms() const {
   const double due = due_.empty() || sync_.empty() ? kNever : time_base_.time_at(due_.front().time_ms);
   const double settled = time_base_.settled_from_ms() > machine_.now_ms ? time_base_.settled_from_ms() : kNever;
   const bool motors_decide = phase_ == Phase::kRapid || phase_ == Phase::kHoming;
-  return std::min({motors_decide ? motors_end_ms() : resume_ms_, due, settled});
+  return std::min({shape_at_ms_, motors_decide ? motors_end_ms() : resume_ms_, due, settled});
 }
 
 /// When the last of the motors that a rapid move or home search waits for comes to rest, as things stand.
@@ -225,6 +226,7 @@ void CoordSystem::motors_arrived(double time_ms) {
 void CoordSystem::service(double time_ms) {
   perform_due(time_ms);
   record_executed(time_ms);
+  if (shape_at_ms_ <= time_ms) shape_rate(time_ms);
   if (rapid_open_ && !program_running() && motors_end_ms() <= time_ms) report_rapid(time_ms);
   for (int steps = 0; resume_ms_ <= time_ms; ++steps) {
     if (steps == kMaxStepsAtOneTime) {
