@@ -50,7 +50,7 @@ std::string CoordSystem::start(double time_ms) {
   runner_.thread.q = q.data();
   machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
   block_ = {};
-  stop_requested_ = pause_requested_ = stepping_ = false;
+  stop_requested_ = pause_requested_ = stepping_ = step_block_ = false;
   sync_.clear();
   phase_ = Phase::kCalculating;
   resume_ms_ = time_ms;
@@ -89,6 +89,11 @@ void CoordSystem::pause_here(double time_ms) {
   phase_ = Phase::kPaused;
   resume_ms_ = kNever;
   pause_requested_ = stepping_ = false;
+  note_pause(time_ms);
+}
+
+/// Where the motors have to be when the program goes on.
+void CoordSystem::note_pause(double time_ms) {
   paused_mu_.clear();
   for (int motor : motors_) {
     Motor& m = machine_.motors[static_cast<std::size_t>(motor)];

@@ -29,8 +29,13 @@ std::optional<double> trigger_distance_mu(const RapidMove& move, const motion::M
 
 }  // namespace
 
-RapidMove CoordSystem::rapid_move(const ModalState& modes, const OpenBlock& block, bytecode::SourceLine source) const {
-  return {block_target(modes, block, calculated_uu_), block.trigger_axes, block.trigger, source};
+std::optional<Fault> CoordSystem::rapid_move(const ModalState& modes, const OpenBlock& block, bytecode::SourceLine source, RapidMove& move) {
+  if (block.trigger_axes != 0 && frame_.transform >= 0)
+    return Fault{FaultKind::kNotSimulated, source, "a move until a trigger (^) under a transformation is not simulated; program tsel-1 before"};
+  motion::MotionCommand command = block_command(modes, block, program_uu_, machine_.elements, number_, source);
+  if (auto fault = place(command)) return fault;
+  move = {command.target_uu, block.trigger_axes, block.trigger, source};
+  return std::nullopt;
 }
 
 /// Speed and ramps of every motor of the map; with RapidVelCtrl all take the time of the slowest.
@@ -99,7 +104,9 @@ Flow CoordSystem::plc_move(Thread& thread, const OpenBlock& block) {
                             fmt::format("error #38: PROGRAM RUNNING: coordinate system {} executes a program and cannot be moved by a PLC", number_)});
   if (std::string refusal = why_not_ready(false); !refusal.empty()) return give_up(thread, {FaultKind::kNotReady, thread.source(), refusal});
   report_rapid(machine_.now_ms);
-  if (auto fault = move_rapid(machine_.now_ms, rapid_move(modes, block, thread.source()))) return give_up(thread, std::move(*fault));
+  RapidMove move;
+  if (auto fault = rapid_move(modes, block, thread.source(), move)) return give_up(thread, std::move(*fault));
+  if (auto fault = move_rapid(machine_.now_ms, move)) return give_up(thread, std::move(*fault));
   return Flow::kContinue;
 }
 
