@@ -33,6 +33,7 @@ std::optional<Fault> CoordSystem::rapid_move(const ModalState& modes, const Open
   if (block.trigger_axes != 0 && frame_.transform >= 0)
     return Fault{FaultKind::kNotSimulated, source, "a move until a trigger (^) under a transformation is not simulated; program tsel-1 before"};
   motion::MotionCommand command = block_command(modes, block, program_uu_, machine_.elements, number_, source);
+  program_uu_ = command.target_uu;
   if (auto fault = place(command)) return fault;
   move = {command.target_uu, block.trigger_axes, block.trigger, source};
   return std::nullopt;
