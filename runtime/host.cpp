@@ -41,9 +41,15 @@ class MachineHost : public Host {
     }
   }
 
-  double read_i(Thread&, int number) override { return s_.i_values[static_cast<std::size_t>(number)]; }
+  double read_i(Thread& thread, int number) override {
+    const bytecode::IVariable alias = bytecode::i_variable(number);
+    if (alias.id == bytecode::kNoElement) return s_.i_values[static_cast<std::size_t>(number)];
+    return read_element(thread, {alias.id, {alias.index, 0, 0}});
+  }
   void write_i(Thread& thread, int number, double value) override {
-    s_.warn(thread.source(), "I variables are plain variables here and set no element; assign the element by its name");
+    const bytecode::IVariable alias = bytecode::i_variable(number);
+    if (alias.id != bytecode::kNoElement) return void(write_element(thread, {alias.id, {alias.index, 0, 0}}, value));
+    if (number < kFirstFreeI) s_.warn(thread.source(), fmt::format("I{} is a plain variable here and sets no element", number));
     s_.i_values[static_cast<std::size_t>(number)] = value;
   }
 
@@ -112,6 +118,7 @@ class MachineHost : public Host {
 
  private:
   static constexpr std::size_t kMaxQueuedCommands = 10'000;
+  static constexpr int kFirstFreeI = 8192;
 
   static bool is_block_word(Opcode op) {
     return op == Opcode::kAxisWord || op == Opcode::kBlockEnd || op == Opcode::kDwell || op == Opcode::kDelay;
@@ -288,7 +295,7 @@ void Machine::State::perform(const SyncEntry& entry, CoordSystem& from) {
     case VariableClass::kP: p[number] = with(p[number]); break;
     case VariableClass::kQ: from.q[number] = with(from.q[number]); break;
     case VariableClass::kM: host->write_m(thread, entry.target.number, with(host->read_m(thread, entry.target.number))); break;
-    case VariableClass::kI: i_values[number] = with(i_values[number]); break;
+    case VariableClass::kI: host->write_i(thread, entry.target.number, with(host->read_i(thread, entry.target.number))); break;
     case VariableClass::kElement: host->write_element(thread, entry.element, with(host->read_element(thread, entry.element))); break;
     default: break;  // L, R, C, D are refused by the compiler as synchronous targets
   }

@@ -127,13 +127,15 @@ struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; 
 struct GlobalDeclaration { VariableClass variable_class = VariableClass::kP; std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
 struct Globals { std::vector<GlobalDeclaration> names; };
 struct Report { ExprPtr value; std::string name; };
+struct PointerQuery { std::string name; std::int64_t number = 0; };
+struct SystemCommand { std::string text; };  // vers, echo 7, list prog 5: lower case, single blanks
 struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its open ... close stands here
 
 struct Stmt {
   Span span;
   std::variant<Block, Assign, AssignSeries, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, SetMode, SetParameter,
                SetAbsInc, SetFrax, SetNormal, Move, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
-               Globals, Report, OpenBuffer>
+               Globals, Report, PointerQuery, SystemCommand, OpenBuffer>
       node;
 };
 

@@ -47,6 +47,7 @@ class Binder {
   void bind(ir::DefinePointer& node, const source::Span& span);
   void bind(ir::Globals& node, const source::Span& span);
   void bind(ir::Report& node, const source::Span& span);
+  void bind(ir::PointerQuery& node, const source::Span& span);
   template <class Other> void bind(Other&, const source::Span&) {}  // nothing to bind
 
   void bind_routine_name(ir::Jump& node, const source::Span& span);

@@ -288,6 +288,12 @@ void Binder::bind(ir::Globals& node, const source::Span& span) {
   }
 }
 
+void Binder::bind(ir::PointerQuery& node, const source::Span& span) {
+  const Name* name = project_.names.find(node.name);
+  if (name && name->kind == SymbolKind::kPointer) node.number = name->number;
+  else report_unknown(node.name, span, "pointer");
+}
+
 void Binder::bind(ir::Report& node, const source::Span&) { bind_value(*node.value); }
 
 // --- buffers --------------------------------------------------------------------------------------------------------------

@@ -281,6 +281,8 @@ dispatch_next:
   ONLINE(DefineAxis);
   ONLINE(DefinePointer);
   ONLINE(InstallProgram);
+  ONLINE(ReportElement);
+  ONLINE(SystemCommand);
   ONLINE(Report);
 
 #include "runtime/interpreter/core_fused.inc"
