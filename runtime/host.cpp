@@ -8,6 +8,7 @@
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
 #include "runtime/state.h"
+#include "runtime/value_text.h"
 
 namespace pmac::runtime {
 namespace {
@@ -150,6 +151,7 @@ class MachineHost : public Host {
   Flow enable_gathering(Thread& thread, double value);
   void define_axis(Thread& thread, const bytecode::AxisDefinition& definition);
   void define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition);
+  void report_element(const bytecode::ElementRef& ref, double value);
   void install(const bytecode::Program& program);
 
   Machine::State& s_;
@@ -196,6 +198,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kMotorHomePos: s_.motors[a.index[0]].home_position_mu = value; return Flow::kContinue;
     case ElementId::kMotorHomeComplete: s_.motors[a.index[0]].home_complete = value != 0; return Flow::kContinue;
     case ElementId::kGatherEnable: return enable_gathering(thread, value);
+    case ElementId::kCoordLHSize: s_.coord(static_cast<int>(a.index[0])).lookahead_buffer = value >= 1 && value <= 1e8 ? static_cast<int>(value) : 0; break;
     case ElementId::kCoordDesTimeBase: {
       const std::string refusal = s_.coord(static_cast<int>(a.index[0])).set_time_base(s_.now_ms, value / s_.period_ms());
       if (refusal.empty()) return Flow::kContinue;
@@ -257,16 +260,29 @@ Flow MachineHost::online(Thread& thread, const bytecode::Module& module, const b
     case Opcode::kDefineAxis: define_axis(thread, module.axis_definitions[index]); return Flow::kContinue;
     case Opcode::kDefinePointer: define_pointer(module, module.pointer_definitions[index]); return Flow::kContinue;
     case Opcode::kInstallProgram: install(module.programs[index]); return Flow::kContinue;
-    case Opcode::kReport: s_.answer(fmt::format("{}={}", module.strings[index], r[instruction.a])); return Flow::kContinue;
+    case Opcode::kReport: answer_value(s_, module.strings[index], double_text(r[instruction.a])); return Flow::kContinue;
+    case Opcode::kReportElement: report_element(module.element_refs[index], r[instruction.a]); return Flow::kContinue;
+    case Opcode::kSystemCommand:
+      if (const std::string refusal = execute_system_command(s_, thread, module.strings[index]); !refusal.empty())
+        s_.refuse(module.strings[index], refusal);
+      return Flow::kContinue;
     default: return fault(thread, FaultKind::kNotSimulated, "this command is not simulated");
   }
+}
+
+void MachineHost::report_element(const bytecode::ElementRef& ref, double value) {
+  ElementAddress address{ref.id, {}};
+  for (std::size_t i = 0; i < address.index.size(); ++i) address.index[i] = ref.index[i].value;
+  const auto type = ref.address ? bytecode::ElementType::kAddress : element_info(ref.id).type;
+  answer_value(s_, element_text(address) + (ref.address ? ".a" : ""), value_text(type, value));
 }
 
 void MachineHost::define_axis(Thread& thread, const bytecode::AxisDefinition& definition) {
   const int motor = definition.motor >= 0 ? definition.motor : thread.motor;
   if (motor >= bytecode::kMaxMotors) return s_.refuse(fmt::format("#{}->", motor), "error #23: OUT OF RANGE NUMBER: no such motor");
   if (const std::string refusal = s_.coord(thread.coord).define(definition, motor); !refusal.empty())
-    s_.refuse(fmt::format("&{}#{}->", thread.coord, motor), refusal);
+    return s_.refuse(fmt::format("&{}#{}->", thread.coord, motor), refusal);
+  s_.axis_definitions[motor] = {thread.coord, motor, definition};
 }
 
 void MachineHost::define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition) {

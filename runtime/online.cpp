@@ -136,15 +136,6 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kDeleteLookahead: coord.lookahead_buffer = 0; return Flow::kContinue;
     case ControlVerb::kEnable: enable_motors(call, coord, true); return Flow::kContinue;
     case ControlVerb::kDisable: enable_motors(call, coord, false); return Flow::kContinue;
-    case ControlVerb::kReportCoordPosition: {
-      const AxisVector position = coord.commanded_position(call.s.now_ms);
-      std::string text;
-      for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
-        if (coord.axes_with_motors() >> axis & 1u)
-          text += fmt::format("{}{}{}", text.empty() ? "" : " ", bytecode::axis_name(axis), position[static_cast<std::size_t>(axis)]);
-      call.s.answer(text);
-      return Flow::kContinue;
-    }
     default: return not_simulated(call);
   }
 }
@@ -221,10 +212,6 @@ Flow motor_verb(const Call& call) {
   Motor& m = call.s.motors[static_cast<std::size_t>(number)];
   const double now = call.s.now_ms;
   switch (call.verb) {
-    case ControlVerb::kReportPosition:
-    case ControlVerb::kReportDesired: call.s.answer(fmt::format("{}", m.position_at(now))); return Flow::kContinue;
-    case ControlVerb::kReportVelocity: call.s.answer(fmt::format("{}", m.velocity_at(now) * call.s.period_ms())); return Flow::kContinue;
-    case ControlVerb::kReportFollowingError: call.s.answer("0"); return Flow::kContinue;
     case ControlVerb::kKill: kill(call, m); return Flow::kContinue;
     default: break;
   }
@@ -322,8 +309,12 @@ Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::s
 }  // namespace
 
 Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
-  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer;
+  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer && verb != ControlVerb::kReportAlias;
   if (all) return execute_for_all(s, runner, verb, arguments, refusal);
+  if (is_report(verb)) {
+    refusal = report(s, runner, verb, arguments);
+    return Flow::kContinue;
+  }
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);

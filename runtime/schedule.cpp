@@ -151,6 +151,7 @@ void Machine::State::service(double time_ms) {
     if (options.observers.move)
       options.observers.move({"jog", m.jog_source, -1, m.number, m.jog_start_ms, m.rest_since_ms, std::abs(m.position_mu - m.jog_start_mu)});
   }
+  programs_execute = true;
   for (const auto& c : coords) c->service(time_ms);
   execute_queued_commands();
   while (!timed.empty() && timed.front().time_ms <= time_ms) {
@@ -159,6 +160,8 @@ void Machine::State::service(double time_ms) {
     command(text, "--at");
   }
   scan_plcs(time_ms);
+  programs_execute = false;
+  reset_now();
 }
 
 RunOutcome Machine::State::run(const RunLimits& limits) {
@@ -183,6 +186,7 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
     now_ms = next;
   }
   outcome.time_ms = now_ms;
+  if (limits.more_follows) return outcome;
   for (const auto& c : coords) c->report_unfinished(now_ms, true);
   for (const auto& c : coords)
     if (c->program_active())

@@ -20,11 +20,22 @@ std::string with_short_exponent(std::string text) {
   return text.substr(0, e + 1) + sign + (digits == std::string::npos ? "0" : text.substr(digits));
 }
 
+/// Like %g, but magnitudes below 0.001 have an exponent already.
+std::string digits_text(double value, int digits) {
+  const bool small = value != 0 && std::abs(value) < 1e-3;
+  if (!small) return with_short_exponent(fmt::format("{:.{}g}", value, digits));
+  std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const std::size_t e = text.find('e');
+  const std::size_t last = text.find_last_not_of('0', e - 1);
+  text.erase(text[last] == '.' ? last : last + 1, e - (text[last] == '.' ? last : last + 1));
+  return with_short_exponent(text);
+}
+
 }  // namespace
 
-std::string double_text(double value) { return with_short_exponent(fmt::format("{:.18g}", value)); }
+std::string double_text(double value) { return digits_text(value, 18); }
 
-std::string float_text(double value) { return with_short_exponent(fmt::format("{:.8g}", static_cast<double>(static_cast<float>(value)))); }
+std::string float_text(double value) { return digits_text(static_cast<float>(value), 8); }
 
 std::string mask_text(double value) {
   if (!(value > -0x1p31 && value < 0x1p53)) return double_text(value);

@@ -110,6 +110,7 @@ class CoordSystem {
   const AxisVector& calculated_position() const { return calculated_uu_; }
   AxisVector commanded_position(double time_ms);
   void observe(motion::StageObservers observers);
+  const motion::StageObservers& observers() const { return observers_; }
 
  private:
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kPaused };

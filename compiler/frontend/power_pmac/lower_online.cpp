@@ -251,21 +251,17 @@ void Lowering::lower_series(P::OnlineListAssignmentContext* assignment, ir::Body
 }
 
 void Lowering::lower_command(std::string_view word, source::Span span, ir::Body& out) {
-  struct Row { std::string_view word; ControlVerb verb; enum { kMotor, kCoord, kNone } of; };
+  struct Row { std::string_view word; ControlVerb verb; enum { kMotor, kCoord } of; };
   constexpr Row kRows[] = {{"r", ControlVerb::kRun, Row::kCoord}, {"s", ControlVerb::kStep, Row::kCoord}, {"q", ControlVerb::kPause, Row::kCoord},
                            {"h", ControlVerb::kHold, Row::kCoord}, {"a", ControlVerb::kAbort, Row::kCoord}, {"<", ControlVerb::kRetrace, Row::kCoord},
                            {">", ControlVerb::kForward, Row::kCoord}, {"\\", ControlVerb::kQuickStop, Row::kCoord}, {"k", ControlVerb::kKill, Row::kMotor},
-                           {"hm", ControlVerb::kHome, Row::kMotor}, {"hmz", ControlVerb::kHomeZero, Row::kMotor}, {"$", ControlVerb::kPhase, Row::kMotor},
-                           {"save", ControlVerb::kSave, Row::kNone}};
+                           {"hm", ControlVerb::kHome, Row::kMotor}, {"hmz", ControlVerb::kHomeZero, Row::kMotor}, {"$", ControlVerb::kPhase, Row::kMotor}};
   if (lower_report(word, span, out)) return;
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.word == word; });
-  if (row == std::end(kRows)) return not_supported(span, fmt::format("the on-line command {}", word));
-  std::vector<ir::ExprPtr> numbers;
-  if (row->of == Row::kNone) numbers.push_back(nullptr);
-  else numbers = row->of == Row::kMotor ? addressed_motors(span) : addressed_coords(span);
-  for (ir::ExprPtr& number : numbers) {
+  if (row == std::end(kRows)) return out.push_back(ir::make_stmt(span, ir::SystemCommand{std::string(word)}));
+  for (ir::ExprPtr& number : row->of == Row::kMotor ? addressed_motors(span) : addressed_coords(span)) {
     std::vector<ir::ExprPtr> arguments;
-    if (row->of != Row::kNone) arguments.push_back(std::move(number));
+    arguments.push_back(std::move(number));
     add_control(row->verb, span, std::move(arguments), out);
   }
 }

@@ -43,9 +43,10 @@ Table make_online_keywords() {
   Table table;
   add_keywords(table, T::OPEN, T::STEP);
   table.erase("local");
-  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save"}) table[word] = T::COMMAND;
-  for (const char* word : {"fsave", "reboot", "vers", "type", "cpu", "cid", "size", "buffer", "list", "undefine", "date", "time", "system", "free", "dir", "backup"})
-    table[word] = T::OTHER_COMMAND;
+  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save", "fsave", "reboot", "vers", "type", "cpu", "cid", "size",
+                           "buffer", "date", "time", "free", "dir"})
+    table[word] = T::COMMAND;
+  for (const char* word : {"list", "undefine", "system", "backup"}) table[word] = T::OTHER_COMMAND;
   table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"clear", T::CLEAR}, {"cx", T::CX}, {"define", T::DEFINE},
                 {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}});
   return table;
