@@ -8,6 +8,7 @@
 //     print(session.diagnostics());
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,9 @@ struct InputFile {
   std::string name;   // as messages show it; the folder of a relative #include
   std::string text;
 };
+
+/// First numbers that global, csglobal and ptr names get.
+struct VariableStarts { std::int64_t p = 8192, q = 1024, m = 8192; };
 
 struct Options {
   std::vector<std::string> include_dirs;
@@ -44,12 +48,16 @@ class Session {
   /// for example "-e" or "stdin". coord, motor: what & and # address when the text begins.
   std::optional<bytecode::Module> compile_online(std::string_view text, std::string_view name);
 
+  /// For names that are declared from now on.
+  void set_variable_starts(const VariableStarts& starts);
+
   /// Makes the names of a loaded object file known.
   void adopt(const bytecode::Module& module);
 
   /// Diagnostics of all calls so far; cleared by take.
   source::Diagnostics& diagnostics();
   const source::SourceManager& sources() const;
+  source::SourceManager& sources();
 
   struct State;
   State& state() { return *state_; }  // for the emit functions below
@@ -62,7 +70,8 @@ class Session {
 std::string emit_tokens(Session& session, const InputFile& file);
 std::string emit_tree(Session& session, const InputFile& file);
 std::string emit_ir(Session& session, const std::vector<InputFile>& files);
-std::string emit_symbols(const bytecode::Module& module);
+/// Also where there are errors: of what could be declared.
+std::string emit_symbols(Session& session, const std::vector<InputFile>& files);
 std::string emit_elements();
 
 }  // namespace pmac::compiler

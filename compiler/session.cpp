@@ -43,6 +43,7 @@ std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& file
   std::vector<ir::Unit> units;
   for (const InputFile& file : files) units.push_back(frontend.read(file.name, file.text));
   for (const std::string& name : frontend.known_names()) project.lexed_names.insert(name);
+  for (const ir::Unit& unit : units) sema::reserve_numbers(unit, project);
   for (ir::Unit& unit : units) sema::declare(unit, project, diagnostics);
   const sema::Settings settings{options.extra_warnings, online};
   for (ir::Unit& unit : units) sema::check(unit, project, settings, diagnostics);
@@ -86,5 +87,8 @@ void Session::adopt(const bytecode::Module& module) {
 
 source::Diagnostics& Session::diagnostics() { return state_->diagnostics; }
 const source::SourceManager& Session::sources() const { return state_->sources; }
+source::SourceManager& Session::sources() { return state_->sources; }
+
+void Session::set_variable_starts(const VariableStarts& starts) { state_->project.names.set_starts(starts.p, starts.q, starts.m); }
 
 }  // namespace pmac::compiler

@@ -74,26 +74,6 @@ std::string axis_definition(Machine::State& s, const Runner& runner, const Motor
   return fmt::format("{}#{}->{}", where, m.number, text);
 }
 
-// --- pointers ---------------------------------------------------------------------------------------------------------------
-
-std::string field_text(const bytecode::PointerDefinition& d) {
-  return d.has_field ? fmt::format(".{}.{}", d.start_bit, d.width) : std::string();
-}
-
-std::string pointer_text(const PointerEntry& pointer) {
-  using bytecode::PointerKind;
-  const bytecode::PointerDefinition& d = pointer.definition;
-  switch (d.kind) {
-    case PointerKind::kSelf: return "*";
-    case PointerKind::kElement: return element_text(pointer.element) + field_text(d);
-    case PointerKind::kIo: return fmt::format("{}.io:${:x}{}", d.is_signed ? 's' : 'u', d.address, fmt::format(".{}.{}", d.start_bit, d.width));
-    case PointerKind::kUserInteger: return fmt::format("{}.user:${:x}{}", d.is_signed ? 's' : 'u', d.address, fmt::format(".{}.{}", d.start_bit, d.width));
-    case PointerKind::kUserFloat: return fmt::format("f.user:${:x}", d.address);
-    case PointerKind::kUserDouble: return fmt::format("d.user:${:x}", d.address);
-    default: return "*";
-  }
-}
-
 // --- coordinate systems -------------------------------------------------------------------------------------------------------
 
 /// Axis values of the axes that have motors: "X10 Y-5".
@@ -156,8 +136,7 @@ int number_of(std::span<const double> arguments, int addressed, int count) {
   return given >= 0 && given < count ? static_cast<int>(given) : -1;
 }
 
-std::string variable_definition(Machine::State& s, ControlVerb verb, int number) {
-  if (verb == ControlVerb::kReportPointer) return fmt::format("M{}->{}", number, pointer_text(s.pointers.at(number)));
+std::string alias(int number) {
   const bytecode::IVariable alias = bytecode::i_variable(number);
   return fmt::format("I{}->{}", number, alias.id == bytecode::kNoElement ? "*" : element_text({alias.id, {alias.index, 0, 0}}));
 }
@@ -165,18 +144,18 @@ std::string variable_definition(Machine::State& s, ControlVerb verb, int number)
 }  // namespace
 
 bool is_report(ControlVerb verb) {
-  return verb >= ControlVerb::kReportPosition && verb <= ControlVerb::kReportPointer && verb != ControlVerb::kReportTimeBase;
+  return verb >= ControlVerb::kReportPosition && verb <= ControlVerb::kReportGlobalStatus && verb != ControlVerb::kReportTimeBase;
 }
 
 std::string report(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments) {
   if (verb == ControlVerb::kReportGlobalStatus) return s.answer("$00000000"), "";
-  const bool of_variable = verb == ControlVerb::kReportPointer || verb == ControlVerb::kReportAlias;
+  const bool of_variable = verb == ControlVerb::kReportAlias;
   const bool of_coord = verb >= ControlVerb::kReportCoordPosition && verb <= ControlVerb::kReportCoordStatus;
   const int addressed = of_coord ? runner.thread.coord : runner.thread.motor;
-  const int count = of_variable ? bytecode::kMCount : of_coord ? bytecode::kMaxCoords : bytecode::kMaxMotors;
+  const int count = of_variable ? bytecode::kICount : of_coord ? bytecode::kMaxCoords : bytecode::kMaxMotors;
   const int number = number_of(arguments, addressed, count);
   if (number < 0) return "error #23: OUT OF RANGE NUMBER";
-  if (of_variable) s.answer(variable_definition(s, verb, number));
+  if (of_variable) s.answer(alias(number));
   else if (of_coord) s.answer(coord_answer(s, runner, verb, number));
   else s.answer(motor_answer(s, runner, verb, s.motors[static_cast<std::size_t>(number)]));
   return "";

@@ -119,6 +119,18 @@ std::string size_of_buffers(const SystemCall& call) {
   return answer(call, fmt::format("{}", instructions * sizeof(bytecode::Instruction)));
 }
 
+/// define rotary and delete rotary. A rotary buffer is always there and has room for every line; deleting forgets its lines.
+std::string rotary(const SystemCall& call) {
+  const bool named = call.words.back().starts_with('&');
+  const auto number = named ? number_in(call.words.back().substr(1)) : std::optional<std::uint32_t>(static_cast<std::uint32_t>(call.thread.coord));
+  if (!number || *number >= call.s.coords.size()) return "error #23: OUT OF RANGE NUMBER: which coordinate system's rotary buffer";
+  CoordSystem& coord = call.s.coord(static_cast<int>(*number));
+  if (call.word(0) == "define") return {};
+  if (coord.program_active()) return "error #38: PROGRAM RUNNING";
+  coord.clear_rotary();
+  return {};
+}
+
 // --- motors ---------------------------------------------------------------------------------------------------------------------
 
 /// undefine: the addressed coordinate system, or the one that is named; undefine all.
@@ -150,6 +162,7 @@ std::string reset(const SystemCall& call) {
 struct Row { std::string_view word; std::string (*handler)(const SystemCall&); };
 constexpr Row kRows[] = {
     {"echo", echo}, {"list", list}, {"buffer", list_buffers}, {"size", size_of_buffers}, {"undefine", undefine},
+    {"define", rotary}, {"delete", rotary},
     {"save", save}, {"fsave", save}, {"$$$", reset}, {"$$$***", reset}, {"reboot", reset},
     {"vers", [](const SystemCall& call) { return answer(call, "0.1.0"); }},
     {"type", [](const SystemCall& call) { return answer(call, "pmac-run"); }},

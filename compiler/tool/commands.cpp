@@ -27,11 +27,16 @@ int explain(const std::string& code) {
 
 std::string stage_text(compiler::Session& session, const std::string& stage, const std::vector<compiler::InputFile>& files) {
   std::string text;
+  if (stage == "files") {
+    for (const compiler::InputFile& file : files) text += file.name + "\n";
+    return text;
+  }
   if (stage == "ir") return compiler::emit_ir(session, files);
+  if (stage == "symbols") return compiler::emit_symbols(session, files);
   if (stage == "tokens" || stage == "tree") {
     for (const compiler::InputFile& file : files) text += stage == "tokens" ? compiler::emit_tokens(session, file) : compiler::emit_tree(session, file);
   } else if (const auto module = session.compile(files)) {
-    text = stage == "bytecode" ? bytecode::disassemble(*module) : compiler::emit_symbols(*module);
+    text = bytecode::disassemble(*module);
   }
   return text;
 }
@@ -65,9 +70,9 @@ int run(const Arguments& arguments) {
     return kOk;
   }
   if (arguments.files.empty()) throw UsageError("no input files; try pmacc --help");
-  const std::vector<compiler::InputFile> files = read_inputs(arguments.files);
   compiler::Session session(compiler_options(arguments));
   set_up_diagnostics(session.diagnostics(), arguments);
+  const std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
   return arguments.emit.empty() ? compile(session, arguments, files) : emit(session, arguments, files);
 }
 

@@ -43,13 +43,11 @@ bool Lowering::lower_report(std::string_view word, source::Span span, ir::Body& 
   return true;
 }
 
-/// M5->, Input->, I123->.
-void Lowering::lower_definition_query(P::OnlineContext* online, ir::Body& out) {
-  const source::Span span = span_of(online);
-  if (online->reference()) return out.push_back(ir::make_stmt(span, ir::PointerQuery{text_of(online->reference()->start)}));
+/// I123->: the element that the variable is another name for.
+void Lowering::lower_alias_query(P::OnlineContext* online, ir::Body& out) {
   std::vector<ir::ExprPtr> arguments;
-  arguments.push_back(ir::make_number(static_cast<double>(whole_number(token_of(online->NUMBER(0)), bytecode::kMCount - 1).value_or(0)), span));
-  add_control(online->LETTER_I() ? ControlVerb::kReportAlias : ControlVerb::kReportPointer, span, std::move(arguments), out);
+  arguments.push_back(ir::make_number(static_cast<double>(whole_number(token_of(online->NUMBER(0)), bytecode::kICount - 1).value_or(0)), span_of(online)));
+  add_control(ControlVerb::kReportAlias, span_of(online), std::move(arguments), out);
 }
 
 /// #1..3->

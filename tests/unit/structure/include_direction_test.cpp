@@ -19,13 +19,14 @@ const std::vector<Rule>& rules() {
   static const std::vector<Rule> table = {
       {"compiler/source/", {"compiler/source/"}, {"fmt/", "nlohmann/"}},
       {"compiler/bytecode/", {"compiler/bytecode/", "compiler/source/"}, {"flatbuffers/", "object_file_generated.h", "fmt/"}},
-      {"compiler/frontend/", {"compiler/"}, {"fmt/", "antlr4-runtime", "atn/", "PowerPmac", "Acr1000", "pugixml.hpp"}},
-      {"compiler/tool/", {"compiler/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h", "poll.h"}},
+      {"compiler/frontend/", {"compiler/"}, {"fmt/", "antlr4-runtime", "atn/", "PowerPmac", "Acr1000"}},
+      {"compiler/project/", {"compiler/project/", "compiler/source/", "compiler/compiler.h"}, {"fmt/", "pugixml.hpp"}},
+      {"compiler/tool/", {"compiler/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h"}},
       {"compiler/", {"compiler/"}, {"fmt/"}},
       {"kinematics/", {"kinematics/"}, {"Eigen/"}},
       {"runtime/tool/", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h", "poll.h"}},
-      {"runtime/pmac_run.cpp", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "CLI/", "unistd.h", "poll.h"}},
-      {"runtime/gather/", {"runtime/"}, {"fmt/", "nlohmann/", "unistd.h", "poll.h", "sys/", "fcntl.h"}},
+      {"runtime/pmac_run.cpp", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "CLI/", "unistd.h"}},
+      {"runtime/gather/", {"runtime/"}, {"fmt/", "nlohmann/", "unistd.h", "sys/", "fcntl.h"}},
       {"runtime/", {"runtime/", "kinematics/", "compiler/bytecode/"}, {"fmt/", "Eigen/"}},
   };
   return table;
