@@ -170,16 +170,6 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kDisable:
     case ControlVerb::kDelayedDisable:
     case ControlVerb::kAbortDisable: return disable_motors(call, coord, number);
-    case ControlVerb::kReportCoordStatus: call.s.answer(coord_status_words(call.s, number)); return Flow::kContinue;
-    case ControlVerb::kReportCoordPosition: {
-      const AxisVector position = coord.commanded_position(call.s.now_ms);
-      std::string text;
-      for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
-        if (coord.axes_with_motors() >> axis & 1u)
-          text += fmt::format("{}{}{}", text.empty() ? "" : " ", bytecode::axis_name(axis), position[static_cast<std::size_t>(axis)]);
-      call.s.answer(text);
-      return Flow::kContinue;
-    }
     default: return not_simulated(call);
   }
 }
@@ -257,11 +247,6 @@ Flow motor_verb(const Call& call) {
   Motor& m = call.s.motors[static_cast<std::size_t>(number)];
   const double now = call.s.now_ms;
   switch (call.verb) {
-    case ControlVerb::kReportPosition:
-    case ControlVerb::kReportDesired: call.s.answer(fmt::format("{}", m.position_at(now))); return Flow::kContinue;
-    case ControlVerb::kReportVelocity: call.s.answer(fmt::format("{}", m.velocity_at(now) * call.s.period_ms())); return Flow::kContinue;
-    case ControlVerb::kReportFollowingError: call.s.answer("0"); return Flow::kContinue;
-    case ControlVerb::kReportStatus: call.s.answer(motor_status_words(call.s, m)); return Flow::kContinue;
     case ControlVerb::kKill:
     case ControlVerb::kDelayedKill: return kill(call, m);
     case ControlVerb::kOpenLoop: return open_loop(call, m);
@@ -382,8 +367,12 @@ Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::s
 }  // namespace
 
 Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
-  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer;
+  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer && verb != ControlVerb::kReportAlias;
   if (all) return execute_for_all(s, runner, verb, arguments, refusal);
+  if (is_report(verb)) {
+    refusal = report(s, runner, verb, arguments);
+    return Flow::kContinue;
+  }
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);

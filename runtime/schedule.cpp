@@ -147,6 +147,7 @@ void Machine::State::scan_plcs(double time_ms) {
 
 void Machine::State::service(double time_ms) {
   for (Motor& m : motors) service_motor(*this, m);
+  programs_execute = true;
   for (const auto& c : coords) c->service(time_ms);
   execute_queued_commands();
   while (!timed.empty() && timed.front().time_ms <= time_ms) {
@@ -155,6 +156,8 @@ void Machine::State::service(double time_ms) {
     command(text, "--at");
   }
   scan_plcs(time_ms);
+  programs_execute = false;
+  reset_now();
 }
 
 RunOutcome Machine::State::run(const RunLimits& limits) {
@@ -179,6 +182,7 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
     now_ms = next;
   }
   outcome.time_ms = now_ms;
+  if (limits.more_follows) return outcome;
   for (const auto& c : coords) c->report_unfinished(now_ms, true);
   for (const auto& c : coords)
     if (c->program_active())

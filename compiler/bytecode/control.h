@@ -26,7 +26,9 @@ enum class ControlVerb : std::uint16_t {
   kEnablePlc, kDisablePlc, kPausePlc, kResumePlc, kStepPlc,
   // reports of the on-line stream (motor or coord)
   kReportPosition, kReportVelocity, kReportDesired, kReportFollowingError, kReportStatus,
-  kReportCoordPosition, kReportCoordStatus, kReportTimeBase,
+  kReportCoordPosition, kReportCoordVelocity, kReportCoordDesired, kReportCoordFollowingError, kReportCoordTarget,
+  kReportCoordDistanceToGo, kReportCoordStatus, kReportTimeBase,
+  kReportAxisDefinition /* motor */, kReportAlias /* I number */, kReportGlobalStatus /* no argument */,
   kReportPointer /* M number */,
   kSendAllCommands /* no argument: what cmd has queued is executed before the next statement */,
   kReset, kSave,

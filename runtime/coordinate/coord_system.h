@@ -76,6 +76,7 @@ class CoordSystem {
   /// open rotary: adds lines to program 0 of the coordinate system. One that waits for lines goes on with them.
   std::string append_rotary(ProgramHandle lines, double time_ms);
   void clear_rotary() { rotary_.clear(); }
+  void clear_rotary() { rotary_.clear(); }
   /// One move, dwell or delay; a program that executes is paused.
   std::string step(double time_ms);
   /// Finishes what is calculated and waits at a programmed point.
@@ -146,6 +147,7 @@ class CoordSystem {
   /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
   AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
+  const motion::StageObservers& observers() const { return observers_; }
 
  private:
   enum class Shaping { kNone, kSlower, kFaster };
