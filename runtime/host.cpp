@@ -7,6 +7,7 @@
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
+#include "compiler/bytecode/operators.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -17,6 +18,18 @@ using bytecode::ElementId;
 using bytecode::Opcode;
 using bytecode::PointerKind;
 using bytecode::VariableClass;
+
+/// Sys.Cdata[] and its kin: as an M variable of the same place would write it.
+void write_user_buffer(IoSpace& io, const ElementAddress& a, double value) {
+  if (a.id == ElementId::kSysCdata) {
+    io.user().write(a.index[0], static_cast<std::int8_t>(bytecode::integer_from(value)));
+    return;
+  }
+  bytecode::PointerDefinition place;
+  place.kind = a.id == ElementId::kSysDdata ? PointerKind::kUserDouble : a.id == ElementId::kSysFdata ? PointerKind::kUserFloat : PointerKind::kUserInteger;
+  place.address = a.index[0] * (a.id == ElementId::kSysDdata ? 8 : 4);
+  io.write(place, value);
+}
 
 class MachineHost : public Host {
  public:
@@ -143,7 +156,7 @@ class MachineHost : public Host {
   Flow enable_gathering(Thread& thread, double value);
   void define_axis(Thread& thread, const bytecode::AxisDefinition& definition);
   void define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition);
-  void install(const bytecode::Program& program);
+  void install(Thread& thread, const bytecode::Program& program);
 
   Machine::State& s_;
 };
@@ -174,6 +187,11 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
       break;
     case ElementId::kSysCdTimer: s_.elements.assign(a, s_.now_ms + value); return Flow::kContinue;
     case ElementId::kSysP: s_.p[a.index[0]] = value; return Flow::kContinue;
+    case ElementId::kSysCdata:
+    case ElementId::kSysIdata:
+    case ElementId::kSysUdata:
+    case ElementId::kSysFdata:
+    case ElementId::kSysDdata: write_user_buffer(s_.io, a, value); return Flow::kContinue;
     case ElementId::kCoordQ: s_.coord(static_cast<int>(a.index[0])).q[a.index[1]] = value; return Flow::kContinue;
     case ElementId::kLdataCoord:
       if (!(value >= 0 && value < bytecode::kMaxCoords)) return fault(thread, FaultKind::kRunTime, fmt::format("Ldata.Coord = {} is out of range", value));
@@ -249,7 +267,10 @@ Flow MachineHost::online(Thread& thread, const bytecode::Module& module, const b
       return Flow::kContinue;
     case Opcode::kDefineAxis: define_axis(thread, module.axis_definitions[index]); return Flow::kContinue;
     case Opcode::kDefinePointer: define_pointer(module, module.pointer_definitions[index]); return Flow::kContinue;
-    case Opcode::kInstallProgram: install(module.programs[index]); return Flow::kContinue;
+    case Opcode::kInstallProgram: install(thread, module.programs[index]); return Flow::kContinue;
+    case Opcode::kExecuteProgram:
+      if (const std::string refusal = s_.coord(thread.coord).execute({s_.loading, &module.programs[index]}, s_.now_ms); !refusal.empty()) s_.refuse("cx", refusal);
+      return Flow::kContinue;
     case Opcode::kReport: s_.answer(fmt::format("{}={}", module.strings[index], r[instruction.a])); return Flow::kContinue;
     default: return fault(thread, FaultKind::kNotSimulated, "this command is not simulated");
   }
@@ -274,8 +295,12 @@ void MachineHost::define_pointer(const bytecode::Module& module, const bytecode:
   for (int m = definition.first_m; m <= definition.last_m; ++m) s_.pointers.define(m, definition, element);
 }
 
-void MachineHost::install(const bytecode::Program& program) {
+void MachineHost::install(Thread& thread, const bytecode::Program& program) {
   const ProgramHandle handle{s_.loading, &program};
+  if (program.kind == bytecode::ProgramKind::kRotary) {
+    if (const std::string refusal = s_.coord(thread.coord).append_rotary(handle, s_.now_ms); !refusal.empty()) s_.refuse("open rotary", refusal);
+    return;
+  }
   if (s_.executes(program.kind, program.number))
     return s_.refuse(fmt::format("open {} {}", program_kind_name(program.kind), program.number),
                      "error #38: PROGRAM RUNNING: abort or disable it first");

@@ -8,7 +8,14 @@ bool Thread::begin(ProgramHandle program, std::int64_t label) {
   top_ = program;
   const bytecode::Program& code = *program.program;
   stack_.assign(std::size_t{code.frame_size} + code.outgoing_count, 0.0);
+  cycle_ = {};
   return stand_at_top(label);
+}
+
+void Thread::go_on_with(ProgramHandle program) {
+  top_ = std::move(program);
+  stack_.assign(std::size_t{top_.program->frame_size} + top_.program->outgoing_count, 0.0);
+  stand_at_top(-1);
 }
 
 bool Thread::restart() { return top_ && stand_at_top(-1); }
@@ -16,12 +23,23 @@ bool Thread::restart() { return top_ && stand_at_top(-1); }
 bool Thread::stand_at_top(std::int64_t label) {
   program_ = top_;
   frames_.clear();
+  forget_lines();
   base_ = 0;
+  came_to_end_ = false;
   jump_backs_ = 0;
   host_fault_.reset();
+  format_values_.clear();
   const bytecode::LabelEntry* entry = label < 0 ? nullptr : bytecode::find_label(*program_.program, label);
   pc_ = entry == nullptr ? 0 : entry->pc;
   return label < 0 || entry != nullptr;
+}
+
+void Thread::forget_lines() {
+  line_.clear();
+  line_begin_ = 0;
+  code_depth_ = 0;
+  cycle_.called = false;
+  cycle_.block.clear();
 }
 
 RunResult Thread::run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit) {

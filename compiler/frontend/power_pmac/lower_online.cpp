@@ -27,6 +27,7 @@ ir::Unit Lowering::lower_file(P::FileContext* file) {
     } else if (auto* online = dynamic_cast<P::OnlineContext*>(child)) {
       online_ = true;
       if (online->CLEAR()) lower_clear(online, unit);
+      else if (online->CX()) lower_at_once(online, unit);
       else lower_online(online, unit.load);
     }
   }
@@ -51,7 +52,11 @@ void Lowering::lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffe
     case P::SUBPROG: buffer.kind = ProgramKind::kSubprog; break;
     case P::FORWARD: buffer.kind = ProgramKind::kForward; break;
     case P::INVERSE: buffer.kind = ProgramKind::kInverse; break;
-    case P::ROTARY: buffer.kind = ProgramKind::kRotary; buffer.number = 0; break;
+    case P::ROTARY:
+      buffer.kind = ProgramKind::kRotary;
+      buffer.number = 0;
+      if (!header->NUMBER().empty()) diagnostics_.error("PM3008", span_of(token_of(header->NUMBER(0))), "open rotary takes no number; address the coordinate system before it, as in &2 open rotary");
+      return;
     default: break;
   }
   P::BufferNameContext* name = header->bufferName();
@@ -69,21 +74,38 @@ void Lowering::lower_buffer(P::BufferContext* context, ir::Unit& unit) {
   buffer.span = span_of(context->openHeader());
   buffer.close_span = context->CLOSE() ? span_of(token_of(context->CLOSE())) : buffer.span;
   lower_open_header(context->openHeader(), buffer);
+  in_rotary_ = buffer.kind == ProgramKind::kRotary;
   for (antlr4::tree::ParseTree* child : context->children) {
     if (auto* statement = dynamic_cast<P::StatementContext*>(child)) lower_statement(statement, buffer.body);
     auto* entry = dynamic_cast<P::EntryPointContext*>(child);
     if (!entry || entry->exception || !entry->NAME()) continue;
     buffer.routines.push_back({text_of(token_of(entry->NAME())), span_of(entry), lower_parameters(entry->parameters()), buffer.body.size(), -1});
   }
+  in_rotary_ = false;
+  if (buffer.kind == ProgramKind::kRotary && !buffer.routines.empty()) diagnostics_.error("PM2052", buffer.routines.front().span, "a rotary buffer has no routines; put them into a subprogram and call that");
   const bool header_is_broken = !context->openHeader() || context->openHeader()->exception;
   if (header_is_broken) return;
   unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
   unit.buffers.push_back(std::move(buffer));
 }
 
+/// cx linear X5: statements of a buffer that the addressed coordinate system executes at once.
+void Lowering::lower_at_once(P::OnlineContext* online, ir::Unit& unit) {
+  if (online->exception) return;
+  ir::Buffer buffer;
+  buffer.number = 0;
+  buffer.span = buffer.close_span = span_of(online);
+  online_ = false;
+  lower_statements(online->statement(), buffer.body);
+  unit.load.push_back(ir::make_stmt(buffer.span, ir::ExecuteAtOnce{unit.buffers.size()}));
+  unit.buffers.push_back(std::move(buffer));
+}
+
 /// clear prog 5 makes the buffer empty, like open prog 5 close.
 void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
-  if (online->exception || !online->kind || !online->bufferName()) return;
+  if (online->exception) return;
+  if (!online->NAME().empty()) return lower_clear_all(online, unit);
+  if (!online->kind || !online->bufferName()) return;
   ir::Buffer buffer;
   buffer.span = buffer.close_span = span_of(online);
   buffer.kind = online->kind->getType() == P::PLC ? ProgramKind::kPlc : online->kind->getType() == P::SUBPROG ? ProgramKind::kSubprog : ProgramKind::kProg;
@@ -91,6 +113,25 @@ void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
   else buffer.number = whole_number(token_of(online->bufferName()->NUMBER()), buffer.kind == ProgramKind::kPlc ? bytecode::kMaxPlcs - 1 : 4294967295).value_or(0);
   unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
   unit.buffers.push_back(std::move(buffer));
+}
+
+/// clear all buffers: empties the buffers that the file opened before it.
+void Lowering::lower_clear_all(P::OnlineContext* online, ir::Unit& unit) {
+  const bool known = online->NAME().size() == 2 && lower_case(text_of(token_of(online->NAME(0)))) == "all" && lower_case(text_of(token_of(online->NAME(1)))) == "buffers";
+  if (!known) {
+    diagnostics_.error("PM2001", span_of(online), "clear takes a buffer (clear prog 5), or all buffers");
+    return;
+  }
+  unit.clear_all = span_of(online);
+  for (std::size_t i = unit.buffers.size(); i-- > 0;) {
+    ir::Buffer buffer;
+    buffer.span = buffer.close_span = unit.clear_all;
+    buffer.kind = unit.buffers[i].kind;
+    buffer.name = unit.buffers[i].name;
+    buffer.number = unit.buffers[i].number;
+    unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
+    unit.buffers.push_back(std::move(buffer));
+  }
 }
 
 // --- on-line commands ---------------------------------------------------------------------------------------------------------
@@ -116,7 +157,6 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
     return out.push_back(ir::make_stmt(span, ir::Report{std::move(value), name}));
   }
   if (online->CLOSE()) return;
-  if (online->CX()) return not_supported(span_of(token_of(online->CX())), "cx");
   if (online->programControl()) return lower_program_control(online->programControl(), out);
   if (online->onlineJog()) return lower_online_jog(online->onlineJog(), span, out);
   if (online->COMMAND()) return lower_command(lower_case(text_of(online->start)), span, out);
@@ -222,7 +262,7 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
 
 void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
   const source::Span span = span_of(online);
-  if (!online->pointerTarget()) return not_supported(span, "asking for a pointer definition");
+  if (!online->pointerTarget()) return lower_pointer_query(online, out);
   bytecode::PointerDefinition definition;
   if (online->LETTER_M()) {
     definition.first_m = static_cast<std::int32_t>(whole_number(token_of(online->NUMBER(0)), bytecode::kMCount - 1).value_or(0));
@@ -238,6 +278,14 @@ void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
   node.name_span = span_of(online->reference());
   node.size = -1;  // an existing name
   out.push_back(std::move(statement));
+}
+
+/// M5-> and Name->: answers the definition.
+void Lowering::lower_pointer_query(P::OnlineContext* online, ir::Body& out) {
+  std::vector<ir::ExprPtr> arguments;
+  if (online->LETTER_M()) arguments.push_back(lower_number(token_of(online->NUMBER(0))));
+  else arguments.push_back(lower_reference(online->reference()));
+  add_control(ControlVerb::kReportPointer, span_of(online), std::move(arguments), out);
 }
 
 void Lowering::lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out) {

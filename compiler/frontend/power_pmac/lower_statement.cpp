@@ -61,6 +61,7 @@ void Lowering::lower_statements(const std::vector<P::StatementContext*>& stateme
 void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (!statement || statement->exception) return;
   const source::Span span = span_of(statement);
+  if (in_rotary_) check_rotary(statement);
   if (auto* block = statement->block()) return out.push_back(lower_block(block));
   if (auto* branch = statement->ifStatement()) return out.push_back(lower_if(branch));
   if (auto* loop = statement->whileStatement()) {
@@ -75,8 +76,12 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* label = statement->label()) return lower_label(label, out);
   if (auto* declaration = statement->declaration()) return lower_declaration(declaration, out);
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
-  if (auto* code = statement->codeLine()) return not_supported(span_of(code), fmt::format("the code letter {}", text_of(code->start)));
+  if (auto* code = statement->codeLine()) return lower_code_line(code, out);
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
+  if (auto* call = statement->callStatement()) {
+    ir::NameUse use{text_of(call->start), true, lower_arguments(call->arguments())};
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
   if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
 }
@@ -95,14 +100,16 @@ ir::StmtPtr Lowering::lower_block(P::BlockContext* block) {
 
 ir::StmtPtr Lowering::lower_if(P::IfStatementContext* statement) {
   ir::If result;
-  const auto bodies = statement->body();
   ir::ExprPtr condition = lower_condition(statement->condition());
-  result.branches.push_back({std::move(condition), lower_body(bodies.empty() ? nullptr : bodies[0])});
-  for (P::ElseIfContext* branch : statement->elseIf()) {
-    ir::ExprPtr else_condition = lower_condition(branch->condition());
-    result.branches.push_back({std::move(else_condition), lower_body(branch->body())});
+  result.branches.push_back({std::move(condition), lower_body(statement->body())});
+  for (P::ElsePartContext* part = statement->elsePart(); part; part = part->elsePart()) {
+    if (part->ELSE_IF()) {
+      ir::ExprPtr else_condition = lower_condition(part->condition());
+      result.branches.push_back({std::move(else_condition), lower_body(part->body())});
+    } else if (part->ELSE()) {
+      result.otherwise = lower_body(part->body());
+    }
   }
-  if (bodies.size() > 1) result.otherwise = lower_body(bodies[1]);
   return ir::make_stmt(span_of(statement), std::move(result));
 }
 
@@ -148,20 +155,38 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
   if (statement->CONTINUE()) return out.push_back(ir::make_stmt(span, ir::Continue{}));
   if (statement->RETURN()) return out.push_back(ir::make_stmt(span, ir::Return{}));
   if (statement->STOP()) return out.push_back(ir::make_stmt(span, ir::Stop{}));
-  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(lower_jump(statement));
-  if (statement->CALL()) return out.push_back(lower_call(statement));
+  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(with_words(lower_jump(statement), statement->lineWord()));
+  if (statement->CALL()) return out.push_back(with_words(lower_call(statement), statement->lineWord()));
+  if (statement->READ()) return out.push_back(lower_read(statement));
+  if (statement->BSTART() || statement->BSTOP()) return out.push_back(ir::make_stmt(span, ir::StepBlock{statement->BSTART() != nullptr}));
+  if (lower_flags_and_cycles(statement, out)) return;
   if (statement->DWELL()) return out.push_back(ir::make_stmt(span, ir::Dwell{lower_data(statement->data(0))}));
   if (statement->DELAY()) return out.push_back(ir::make_stmt(span, ir::Delay{lower_data(statement->data(0))}));
   if (statement->PSET()) return lower_pset(statement, out);
   if (statement->programControl()) return lower_program_control(statement->programControl(), out);
   const bool bias = statement->PCLR() || statement->PSTORE() || statement->PLOAD();
-  if (bias && !statement->axisList()) {
+  if (bias) {
+    if (statement->axisList()) diagnostics_.error("PM2053", span_of(statement->axisList()), fmt::format("{} acts on all axes; it takes no list", lower_case(text_of(statement->start))));
     const auto verb = statement->PCLR() ? ir::ControlVerb::kPclr : statement->PSTORE() ? ir::ControlVerb::kPstore : ir::ControlVerb::kPload;
     std::vector<ir::ExprPtr> arguments;
     arguments.push_back(nullptr);
     return add_control(verb, span, std::move(arguments), out);
   }
+  if (statement->PREAD() || statement->VREAD() || statement->DREAD() || statement->FREAD() || statement->TREAD()) return lower_axis_query(statement, out);
   not_supported(span, lower_case(text_of(statement->start)));
+}
+
+/// pread, vread(X,Y): axis values of the coordinate system to D variables.
+void Lowering::lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out) {
+  using Verb = ir::ControlVerb;
+  const Verb verb = statement->PREAD() ? Verb::kPread : statement->VREAD() ? Verb::kVread : statement->DREAD() ? Verb::kDread : statement->FREAD() ? Verb::kFread : Verb::kTread;
+  const source::Span span = span_of(statement);
+  std::vector<ir::ExprPtr> arguments;
+  arguments.push_back(nullptr);
+  bool centres = false;
+  arguments.push_back(statement->axisList() ? ir::make_number(axis_mask(statement->axisList(), &centres), span) : nullptr);
+  if (centres) diagnostics_.error("PM2009", span, "R is no axis");
+  add_control(verb, span, std::move(arguments), out);
 }
 
 ir::StmtPtr Lowering::lower_jump(P::SimpleStatementContext* statement) {

@@ -30,6 +30,7 @@ class Lowering {
   ir::ExprPtr lower_element(P::ReferenceContext* reference);
   ir::ExprPtr lower_number(antlr4::Token* token);
   std::vector<ir::ExprPtr> lower_arguments(P::ArgumentsContext* arguments);
+  ir::ExprPtr lower_argument(P::ArgumentContext* argument);
   std::optional<std::int64_t> whole_number(antlr4::Token* token, std::int64_t most);
   double number_value(const antlr4::Token& token) const;
 
@@ -47,6 +48,7 @@ class Lowering {
   void lower_declaration(P::DeclarationContext* declaration, ir::Body& out);
   ir::StmtPtr lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition);
   void lower_label(P::LabelContext* label, ir::Body& out);
+  void lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out);
 
   // motion (lower_motion.cpp)
   void lower_motion_line(P::MotionLineContext* line, ir::Body& out);
@@ -59,6 +61,16 @@ class Lowering {
   std::uint32_t axis_mask(P::AxisListContext* list, bool* centres);
   int axis_index(antlr4::Token* token);
 
+  // lines of words (lower_lines.cpp)
+  void lower_code_line(P::CodeLineContext* line, ir::Body& out);
+  ir::LineWord lower_line_word(P::LineWordContext* word);
+  /// The statement with the words behind it; the statement itself where there are none.
+  ir::StmtPtr with_words(ir::StmtPtr statement, const std::vector<P::LineWordContext*>& words);
+  ir::StmtPtr lower_move_with_words(P::MoveContext* move);
+  bool lower_flags_and_cycles(P::SimpleStatementContext* statement, ir::Body& out);
+  ir::StmtPtr lower_read(P::SimpleStatementContext* statement);
+  void check_word_count(const std::vector<ir::LineWord>& words, source::Span span);
+
   // programs, motors, coordinate systems (lower_control.cpp)
   void lower_program_control(P::ProgramControlContext* control, ir::Body& out);
   /// Parts of a jog command; distance and trigger may be missing.
@@ -67,6 +79,7 @@ class Lowering {
   std::optional<ir::ControlVerb> jog_verb(const Jog& jog);
   void add_jogs(const Jog& jog, std::vector<ir::ExprPtr> motors, ir::Body& out);
   void lower_start(P::ProgramControlContext* control, ir::Body& out);
+  void lower_text_out(P::ProgramControlContext* control, ir::Body& out);
   void lower_pset(P::SimpleStatementContext* statement, ir::Body& out);
   std::vector<ir::ExprPtr> lower_number_list(P::NumberListContext* list);
   std::vector<ir::ExprPtr> lower_plc_list(P::PlcListContext* list);
@@ -75,15 +88,21 @@ class Lowering {
   void add_control(ir::ControlVerb verb, source::Span span, std::vector<ir::ExprPtr> arguments, ir::Body& out);
   std::string string_value(const antlr4::Token& token) const;
 
+  // what a rotary buffer cannot hold (lower_lines.cpp)
+  void check_rotary(P::StatementContext* statement);
+
   // the load stream (lower_online.cpp)
+  void lower_at_once(P::OnlineContext* online, ir::Unit& unit);
   void lower_buffer(P::BufferContext* buffer, ir::Unit& unit);
   void lower_clear(P::OnlineContext* online, ir::Unit& unit);
+  void lower_clear_all(P::OnlineContext* online, ir::Unit& unit);
   void lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffer);
   std::vector<ir::Parameter> lower_parameters(P::ParametersContext* parameters);
   void lower_online(P::OnlineContext* online, ir::Body& out);
   void lower_address(P::OnlineContext* online, ir::Body& out);
   void lower_axis_definition(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_command(P::OnlineContext* online, ir::Body& out);
+  void lower_pointer_query(P::OnlineContext* online, ir::Body& out);
   void lower_command(std::string_view word, source::Span span, ir::Body& out);
   void lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out);
   void lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out);
@@ -100,6 +119,7 @@ class Lowering {
   const SyntaxTree& tree_;
   source::Diagnostics& diagnostics_;
   bool online_ = false;                        // lowering an on-line command
+  bool in_rotary_ = false;                     // lowering a rotary buffer: no jumps, blocks of one line
   bool coord_addressed_last_ = false;          // & came after #
   std::size_t address_line_ = 0;
   std::vector<std::int64_t> motor_list_, coord_list_;  // of #1..3 and &1,2: for the next command of the line

@@ -78,7 +78,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     const auto stops = [&] {
       const std::size_t next = parser.getCurrentToken()->getType();
       const bool new_line = parser.getTokenStream()->index() > 0 && parser.getCurrentToken()->getLine() != parser.getTokenStream()->LT(-1)->getLine();
-      return next == Token::EOF || next == Parser::CLOSE || next == Parser::OPEN || next == Parser::SEMICOLON || next == Parser::RIGHT_BRACE || new_line;
+      return next == Token::EOF || next == Parser::CLOSE || next == Parser::OPEN || next == Parser::SEMICOLON || next == Parser::RIGHT_BRACE || next == Parser::LINE_END || new_line;
     };
     if (consume_first && parser.getCurrentToken()->getType() != Token::EOF) take();
     while (!stops()) take();
@@ -99,6 +99,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
 
   void report_unexpected_begin(antlr4::Parser& parser) {
     const auto* next = parser.getCurrentToken();
+    if (next->getType() == Parser::LINE_END) return;  // of a statement that was wrong
     if (next->getType() == Parser::RIGHT_BRACE && phantom_braces_ > 0) {
       --phantom_braces_;
       return;
@@ -107,8 +108,17 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     if (index == reported_index_) return;
     reported_index_ = index;
     if (next->getType() == Parser::RIGHT_BRACE) diagnostics_.error("PM2003", tree_.span_of(*next), "this } closes nothing; remove it, or add the missing {");
-    else if (next->getType() == Parser::ELSE) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
-    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}", quoted(*next)));
+    else if (next->getType() == Parser::ELSE || next->getType() == Parser::ELSE_IF) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
+    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}{}", quoted(*next), hint_for(tree_.text_of(*next))));
+  }
+
+  /// What people mean by it: lines of CNC part programs, indices.
+  static std::string_view hint_for(std::string_view begin) {
+    if (begin == "%") return "; the % lines at the ends of a part program file are to be taken out";
+    if (begin == "(") return "; comments of part programs stand behind // here";
+    if (begin == "[") return "; square brackets belong to structures, the computed number of a variable stands in round ones: P(P2)";
+    if (begin == "/") return "; a line that can be skipped begins with cskip and the number of its flag";
+    return {};
   }
 
   void describe(antlr4::Parser& parser, const antlr4::RecognitionException& error) {
@@ -118,7 +128,8 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     const auto expected = error.getExpectedTokens();
     const std::string wanted = expected.size() == 1 ? describe_token(static_cast<std::size_t>(expected.getSingleElement())) : std::string();
     const antlr4::Token* before = parser.getTokenStream()->LT(-1);
-    const bool ends_too_early = before && before->getLine() != offending->getLine();
+    const bool has_begun = before && parser.getContext()->start && before->getTokenIndex() >= parser.getContext()->start->getTokenIndex();
+    const bool ends_too_early = has_begun && before->getLine() != offending->getLine();
     if (ends_too_early) {
       const source::Span place = tree_.span_of(*before);
       const std::string text = wanted.empty() ? fmt::format("the statement is not complete behind {}", quoted(*before)) : fmt::format("expected {} at the end of the line", wanted);
@@ -157,11 +168,16 @@ class Recovery : public antlr4::DefaultErrorStrategy {
   }
 
   void report_unknown_word(const antlr4::Token& token) {
+    reported_index_ = static_cast<std::ptrdiff_t>(token.getTokenIndex());
     const std::string_view word = tree_.text_of(token);
     std::vector<std::string_view> candidates = keyword_names();
     for (const std::string& name : names_.global) candidates.push_back(name);
     for (const std::string& name : names_.local) candidates.push_back(name);
     const std::size_t letters = static_cast<std::size_t>(std::find_if(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; }) - word.begin());
+    if (letters == 1 && word.size() > 1 && (word[0] == 'O' || word[0] == 'o')) {
+      diagnostics_.error("PM2050", tree_.span_of(token), fmt::format("'{}' is the number of a part program; here it stands in open prog {}, so take this line out", word, word.substr(1)));
+      return;
+    }
     const bool looks_like_axis = letters <= 2 && letters < word.size();
     if (looks_like_axis) {
       diagnostics_.error("PM2009", tree_.span_of(token), fmt::format("'{}' is no axis; the axes are A B C U V W X Y Z and AA to HH, LL to ZZ", word.substr(0, letters)));
