@@ -245,7 +245,6 @@ Flow motor_verb(const Call& call) {
   const int number = number_or(call, call.runner.thread.motor, bytecode::kMaxMotors, "motor");
   if (number < 0) return Flow::kContinue;
   Motor& m = call.s.motors[static_cast<std::size_t>(number)];
-  const double now = call.s.now_ms;
   switch (call.verb) {
     case ControlVerb::kKill:
     case ControlVerb::kDelayedKill: return kill(call, m);
