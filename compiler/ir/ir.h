@@ -143,7 +143,8 @@ struct Send { int port = 0; std::string text; std::vector<ExprPtr> values; };
 struct AddressCoord { ExprPtr number; };
 struct AddressMotor { ExprPtr number; };
 struct DefineAxis { bytecode::AxisDefinition definition; };
-struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; std::string name; Span name_span; int size = 0; };
+/// declaration: the whole of `ptr A->..., B->...` that it stands in.
+struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; std::string name; Span name_span; int size = 0; Span declaration; };
 struct GlobalDeclaration { VariableClass variable_class = VariableClass::kP; std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
 struct Globals { std::vector<GlobalDeclaration> names; };
 struct Report { ExprPtr value; std::string name; };
@@ -173,6 +174,7 @@ struct Buffer {
   bytecode::ProgramKind kind = bytecode::ProgramKind::kProg;
   std::int64_t number = -1;        // -1: to be assigned to its name, or the addressed coordinate system
   std::string name;
+  Span name_span;                  // of its name or number
   Span span;                       // of its open line
   Span close_span;
   std::vector<Parameter> parameters;

@@ -7,6 +7,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "compiler/bytecode/module_text.h"
 #include "compiler/sema/binder.h"
 
 namespace pmac::compiler::sema {
@@ -75,9 +76,18 @@ void Binder::bind(ir::Assign& node, const source::Span& span) {
   if (no_sync) diagnostics_.error("PM3024", span, "R and C variables cannot be assigned synchronously; write = instead of ==");
 }
 
-void Binder::bind(ir::AssignSeries& node, const source::Span&) {
+/// P1,10,2=5: every variable of the series must exist.
+void Binder::bind(ir::AssignSeries& node, const source::Span& span) {
   bind_target(*node.target);
   bind_value(*node.value);
+  const auto* first = std::get_if<ir::Variable>(&node.target->node);
+  if (!first) return;
+  if (first->index) return void(diagnostics_.error("PM3023", span, "a series of variables begins with a constant number"));
+  if (node.count < 1) return void(diagnostics_.error("PM3023", span, "a series has at least one variable"));
+  const std::int64_t last = first->number + (node.count - 1) * node.step;
+  const std::string letter = bytecode::variable_class_name(first->variable_class);
+  const int most = bytecode::variable_class_count(first->variable_class) - 1;
+  if (last > most) diagnostics_.error("PM3045", span, fmt::format("the series goes on to {0}{1}; the last one is {0}{2}", letter, last, most));
 }
 
 void Binder::bind(ir::If& node, const source::Span&) {

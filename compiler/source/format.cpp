@@ -64,7 +64,8 @@ std::string include_stack(const SourceManager& sources, const Span& span) {
   std::string text;
   Span from = sources.file(span.file).included_from;
   for (const char* lead = "In file included from "; from.valid(); from = sources.file(from.file).included_from) {
-    text += fmt::format("{}{}:{}:\n", lead, sources.file(from.file).name, sources.line_column(from.file, from.begin).line);
+    const Place place = sources.place(from);
+    text += fmt::format("{}{}:{}:\n", lead, place.file, place.line);
     lead = "                 from ";
   }
   return text;
@@ -76,13 +77,18 @@ std::string message_line(const SourceManager& sources, Severity severity, const 
   return paint("1", place) + paint(severity_color(severity), fmt::format("{}: ", severity_name(severity))) + paint("1", message) + suffix + "\n";
 }
 
-std::string expansion_note(const SourceManager& sources, const Span& span, const Paint& paint) {
-  if (span.expansion < 0) return {};
-  const Expansion& expansion = sources.expansion(span.expansion);
-  const std::string message = fmt::format("in the expansion of macro '{}'", expansion.macro);
-  std::string text = message_line(sources, Severity::kNote, expansion.definition, message, "", paint);
-  if (expansion.definition.valid()) text += snippet(sources, expansion.definition, paint);
-  return text + (expansion.definition.valid() ? expansion_note(sources, expansion.definition, paint) : std::string());
+/// The macros that the text came through, from the inside out.
+std::string expansion_notes(const SourceManager& sources, const Span& span, const Paint& paint) {
+  constexpr int kMaxNotes = 8;
+  std::string text;
+  int shown = 0;
+  for (std::int32_t index = span.expansion; index >= 0 && shown < kMaxNotes; ++shown) {
+    const Expansion& expansion = sources.expansion(index);
+    text += message_line(sources, Severity::kNote, expansion.definition, fmt::format("in the expansion of macro '{}'", expansion.macro), "", paint);
+    if (expansion.definition.valid()) text += snippet(sources, expansion.definition, paint);
+    index = expansion.parent;
+  }
+  return text;
 }
 
 std::string fix_line(const SourceManager& sources, const FixIt& fix) {
@@ -94,9 +100,10 @@ std::string fix_line(const SourceManager& sources, const FixIt& fix) {
 
 nlohmann::json place_json(const SourceManager& sources, const Span& span) {
   if (!span.valid()) return nlohmann::json::object();
-  const LineColumn begin = sources.line_column(span.file, span.begin);
+  const Place begin = sources.place(span);
+  const LineColumn first = sources.line_column(span.file, span.begin);
   const LineColumn end = sources.line_column(span.file, span.end);
-  return {{"file", sources.file(span.file).name}, {"line", begin.line}, {"column", begin.column}, {"end_line", end.line}, {"end_column", end.column}};
+  return {{"file", begin.file}, {"line", begin.line}, {"column", begin.column}, {"end_line", begin.line + end.line - first.line}, {"end_column", end.column}};
 }
 
 nlohmann::json diagnostic_json(const SourceManager& sources, const Diagnostic& diagnostic) {
@@ -121,8 +128,8 @@ nlohmann::json diagnostic_json(const SourceManager& sources, const Diagnostic& d
 
 std::string place_of(const SourceManager& sources, const Span& span) {
   if (!span.valid()) return "<no source>";
-  const LineColumn at = sources.line_column(span.file, span.begin);
-  return fmt::format("{}:{}:{}", sources.file(span.file).name, at.line, at.column);
+  const Place at = sources.place(span);
+  return fmt::format("{}:{}:{}", at.file, at.line, at.column);
 }
 
 std::string format_text(const SourceManager& sources, const Diagnostic& diagnostic, bool color) {
@@ -132,7 +139,7 @@ std::string format_text(const SourceManager& sources, const Diagnostic& diagnost
   text += message_line(sources, diagnostic.severity, diagnostic.span, diagnostic.message, diagnostic.code, paint);
   if (diagnostic.span.valid()) text += snippet(sources, diagnostic.span, paint);
   if (diagnostic.fix) text += fix_line(sources, *diagnostic.fix);
-  text += expansion_note(sources, diagnostic.span, paint);
+  text += expansion_notes(sources, diagnostic.span, paint);
   for (const Note& note : diagnostic.notes) {
     text += message_line(sources, Severity::kNote, note.span, note.message, "", paint);
     if (note.span.valid()) text += snippet(sources, note.span, paint);

@@ -78,6 +78,10 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
   if (auto* code = statement->codeLine()) return lower_code_line(code, out);
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
+  if (auto* call = statement->callStatement()) {
+    ir::NameUse use{text_of(call->start), true, lower_arguments(call->arguments())};
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
   if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
 }
@@ -129,11 +133,6 @@ void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
 }
 
 void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
-  if (assignment->call) {
-    ir::NameUse use{text_of(assignment->call), true, lower_arguments(assignment->arguments())};
-    const source::Span span = span_of(assignment);
-    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
-  }
   ir::Assign result;
   result.target = lower_lvalue(assignment->lvalue());
   if (assignment->step) {
@@ -225,6 +224,7 @@ void Lowering::lower_declaration(P::DeclarationContext* declaration, ir::Body& o
     auto& node = std::get<ir::DefinePointer>(statement->node);
     node.name = definition.name;
     node.name_span = span_of(token_of(pointer->NAME()));
+    node.declaration = span;
     if (pointer->NUMBER()) node.size = static_cast<int>(whole_number(token_of(pointer->NUMBER()), bytecode::kMCount).value_or(0));
     out.push_back(std::move(statement));
   }

@@ -128,7 +128,7 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
     if (kind) return {kind, run_length(word)};
     const bool stands_for_axis = last_[0] != T::AXIS && last_[0] != T::LETTER_C && last_end_ == begin;
-    if (stands_for_axis) return whole_name;
+    if (stands_for_axis) return {T::AXIS, word.size()};  // refused when it is found to be none
     axis_definition_ = false;
   }
   if (expect_name_ || (!is_rest && (names_.contains(word) || must_be_name(word, begin + word.size())))) return whole_name;
@@ -251,7 +251,8 @@ void WordLexer::follow_declaration(std::size_t kind, std::size_t line) {
   const bool opens_parameters = kind == T::LEFT && ((last_[0] == T::NAME && (last_[1] == T::SUBPROG || (last_[1] == T::COLON && last_[2] == T::SUB))) || (last_[0] == T::NUMBER && last_[1] == T::SUBPROG && last_[2] == T::OPEN));
   if (opens_parameters) { declaring_ = Declaring::kParameters; expect_name_ = true; depth_ = 0; return; }
   if (declaring_ == Declaring::kNothing) return;
-  const bool ended_by_line = line != last_line_ && last_[0] != T::COMMA && depth_ == 0 && declaring_ != Declaring::kParameters && kind != T::NAME;
+  const bool name_wanted = last_[0] == T::COMMA || last_[0] == T::GLOBAL || last_[0] == T::CSGLOBAL || last_[0] == T::PTR || last_[0] == T::LOCAL;
+  const bool ended_by_line = line != last_line_ && !name_wanted && depth_ == 0 && declaring_ != Declaring::kParameters;
   depth_ += kind == T::LEFT ? 1 : kind == T::RIGHT ? -1 : 0;
   const bool ended = kind == T::SEMICOLON || ended_by_line || (declaring_ == Declaring::kParameters && depth_ < 0) || kind == T::CLOSE || kind == T::OPEN;
   if (ended) { declaring_ = Declaring::kNothing; expect_name_ = false; return; }
