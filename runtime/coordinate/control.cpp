@@ -231,6 +231,9 @@ void CoordSystem::drop_program() {
   due_.clear();
   pending_moves_.clear();
   executed_.clear();
+  end_compensation();
+  spline_.cancel();
+  pvt_velocity_uu_ms_.fill(0);
   block_ = {};
   pause_requested_ = stepping_ = false;
   rotary_state_ = RotaryState::kNone;

@@ -23,7 +23,9 @@
 #include "runtime/coordinate/time_base.h"
 #include "runtime/coordinate/transform.h"
 #include "runtime/machine.h"
+#include "runtime/motion/cutter_compensation.h"
 #include "runtime/motion/pipeline.h"
+#include "runtime/motion/spline.h"
 #include "runtime/runner.h"
 
 namespace pmac::runtime {
@@ -165,6 +167,17 @@ class CoordSystem {
   Flow end_block(Thread& thread);
   std::optional<Fault> set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source);
   std::optional<Fault> place(motion::MotionCommand& command);
+  std::optional<Fault> compensate(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> flush_compensation();
+  std::optional<Fault> add_compensated();
+  std::optional<Fault> add_to_path(motion::MotionCommand command);
+  void end_compensation() { compensation_.cancel(); modal.compensation_side = 0; }
+  std::optional<Fault> hand_on(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu);
+  std::optional<Fault> add_spline_moves();
+  std::optional<Fault> finish_spline();
+  std::optional<Fault> pvt_has_ended(bytecode::SourceLine source) const;
+  std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
@@ -221,6 +234,11 @@ class CoordSystem {
   AxisVector placed_uu_{};      // program coordinates of the pipeline's calculated position
   AxisVector calculated_uu_{};  // the pipeline's, in the coordinates of the axis definitions
   PositionChange position_change_{};
+  motion::CutterCompensation compensation_;
+  std::vector<motion::MotionCommand> compensated_;
+  motion::Spline spline_;
+  std::vector<motion::MotionCommand> spline_moves_;
+  AxisVector pvt_velocity_uu_ms_{};   // at the end of the last pvt move, program coordinates
   OpenBlock block_;
   double dwell_ms_ = 0;
   int home_motor_ = -1;
