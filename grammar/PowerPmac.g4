@@ -10,13 +10,18 @@ grammar PowerPmac;
 @parser::members {
 /// The next token is on the line of the token before it.
 bool sameLine() { return _input->LT(1)->getLine() == _input->LT(-1)->getLine(); }
+/// A pointer's target comes next, on the same line.
+bool targetFollows() {
+  const size_t type = _input->LA(1);
+  return (type == STAR || type == IO_POINTER || type == NAME) && sameLine();
+}
 /// An else of that type comes next, or behind one semicolon.
 bool elseFollows(size_t type) { return _input->LA(_input->LA(1) == SEMICOLON ? 2 : 1) == type; }
 }
 
 tokens {
   // what a WORD can turn out to be
-  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, ELSE_IF, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
+  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, ELSE_IF, BIT_AND, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
   // keywords of both tables
   OPEN, CLOSE, PROG, PLC, SUBPROG, FORWARD, INVERSE, ROTARY, GLOBAL, CSGLOBAL, PTR, LOCAL, SUB,
   ABORT, ADISABLE, BEGIN, CMD, DDISABLE, DISABLE, DKILL, ENABLE, HOLD, HOME, HOMEZ, JOG, JOGRET, KILL, LH, PAUSE, PMATCH, RESUME,
@@ -166,7 +171,7 @@ suffix : '[' expression (',' expression)* ']' | '.' MEMBER | arguments ;
 
 expression
   : operation=('-' | '+' | '~' | '!') expression
-  | expression operation=('*' | '/' | '%' | '&') expression
+  | expression operation=('*' | '/' | '%' | BIT_AND) expression
   | expression operation=('<<' | '>>') expression
   | expression operation=('+' | '-' | '|' | '^') expression
   | expression operation=('==' | '!=' | '<>' | '<' | '>' | '<=' | '>=' | '!>' | '!<' | '~' | '!~') expression
@@ -223,10 +228,10 @@ online
   : declaration
   | '#' numberList? ('->' ({sameLine()}? axisDefinition)?)?
   | (COORD | '&') numberList?
-  | LETTER_M NUMBER (',' NUMBER)? '->' ({sameLine()}? pointerTarget)?
+  | LETTER_M NUMBER (',' NUMBER)? '->' pointedAt
   | LETTER_I NUMBER '->'
   | variable RANGE NUMBER
-  | reference '->' ({sameLine()}? pointerTarget)?
+  | reference '->' pointedAt
   | assignment
   | onlineListAssignment
   | lvalue
@@ -241,8 +246,8 @@ online
   | ON_J onlineJog
   | ON_OUT data
   | ECHO NUMBER?
-  | ('%' | LINE_PERCENT) ({sameLine()}? data)?
-  | single=('?' | '<' | '>' | '\\' | '$' | RESET)
+  | LINE_PERCENT ({sameLine()}? data)?
+  | single=('?' | '\\' | '$' | RESET)
   | OTHER_COMMAND ({sameLine()}? ~(EOF | ';'))*
   | programControl
   ;
@@ -252,12 +257,17 @@ onlineListAssignment : variable ',' NUMBER (',' NUMBER)? '=' expression ;
 
 onlineJog : operation=('+' | '-' | '/') | operation=('=' | '==' | ':' | '^') ({sameLine()}? jogDistance ('^' trigger=data)?)? ;
 
+/// What a pointer is made to point at; nothing: the question where it points.
+pointedAt : {targetFollows()}? pointerTarget | {!targetFollows()}? ;
+
 axisDefinition
   : LETTER_I
   | CODE NUMBER?
-  | axisTerm+
+  | axisTerm signedAxisTerm*
   ;
-axisTerm : sign=('+' | '-')? NUMBER? axis=(AXIS | LETTER_C | NAME) | sign=('+' | '-')? NUMBER ;
+axisTerm : sign=('+' | '-')? axisFactor ;
+signedAxisTerm : sign=('+' | '-') axisFactor ;
+axisFactor : NUMBER axis=(AXIS | LETTER_C)? | axis=(AXIS | LETTER_C) ;
 
 // --- tokens: the assignment operators stand together, ASSIGN first and SYNC_DECREMENT last -----------------------------------------
 

@@ -34,7 +34,7 @@ class Frontend {
   std::string tokens(const std::string& name, std::string text);
   /// The parse tree, one rule a line, indented.
   std::string tree(const std::string& name, std::string text);
-  /// Places where the grammar can read the text in more than one way, by the parser generator's exact analysis: "line: rule".
+  /// Places where the grammar can read the text in more than one way, by the parser generator's exact analysis: "line: rule: tokens".
   std::vector<std::string> ambiguities(const std::string& name, std::string text);
 
  private:

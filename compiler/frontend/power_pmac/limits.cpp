@@ -21,7 +21,7 @@ bool is_else(std::size_t type) { return type == T::ELSE || type == T::ELSE_IF; }
 bool is_control(std::size_t type) { return type == T::IF || type == T::WHILE || type == T::DO || is_else(type) || type == T::SWITCH; }
 
 bool is_operator(std::size_t type) {
-  return type == T::PLUS || type == T::MINUS || type == T::STAR || type == T::AMPERSAND || type == T::SYNC_ASSIGN ||
+  return type == T::PLUS || type == T::MINUS || type == T::STAR || type == T::AMPERSAND || type == T::BIT_AND || type == T::SYNC_ASSIGN ||
          (type < T::SEMICOLON && type != 0);
 }
 

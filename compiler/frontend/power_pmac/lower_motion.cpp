@@ -161,20 +161,25 @@ void Lowering::append_words(P::MoveWordContext* word, std::vector<ir::Word>& wor
 
 /// A repeated letter begins a new block: X5 Y10 X7 Y13 are two moves.
 void Lowering::lower_move(P::MoveContext* move, ir::Body& out) {
-  if (!move->lineWord().empty()) return out.push_back(lower_move_with_words(move));
-  std::vector<ir::Word> words;
+  const auto words = move->lineWord();
+  if (words.size() == 1 && lower_case(text_of(words[0]->start)) == "f") {  // X10 F5: the feed rate of this move
+    out.push_back(ir::make_stmt(span_of(words[0]), ir::SetParameter{MotionParameter::kFeed, lower_data(words[0]->data(0))}));
+  } else if (!words.empty()) {
+    return out.push_back(lower_move_with_words(move));
+  }
+  std::vector<ir::Word> block;
   const auto finish = [&] {
-    if (words.empty()) return;
-    const source::Span span = source::join(words.front().span, words.back().span);
-    out.push_back(ir::make_stmt(span, ir::Move{std::move(words)}));
-    words.clear();
+    if (block.empty()) return;
+    const source::Span span = source::join(block.front().span, block.back().span);
+    out.push_back(ir::make_stmt(span, ir::Move{std::move(block)}));
+    block.clear();
   };
   for (P::MoveWordContext* word : move->moveWord()) {
     std::vector<ir::Word> next;
     append_words(word, next);
     if (next.empty()) continue;
-    if (is_repeated(words, 0, next.front())) finish();
-    std::move(next.begin(), next.end(), std::back_inserter(words));
+    if (is_repeated(block, 0, next.front())) finish();
+    std::move(next.begin(), next.end(), std::back_inserter(block));
   }
   finish();
 }

@@ -246,12 +246,14 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
     if (lower_case(text_of(right->start)) != "s") diagnostics_.error("PM2009", span_of(right->start), fmt::format("'{}' is no axis", text_of(right->start)));
     if (right->NUMBER()) definition.spindle = static_cast<std::uint8_t>(whole_number(token_of(right->NUMBER()), 1).value_or(0) + 1);
   } else {
-    for (P::AxisTermContext* term : right->axisTerm()) {
-      const double number = term->NUMBER() ? number_value(*term->NUMBER()->getSymbol()) : 1.0;
-      const double value = term->sign && text_of(term->sign) == "-" ? -number : number;
-      const int axis = term->axis ? axis_index(term->axis) : 0;
+    std::vector<std::pair<antlr4::Token*, P::AxisFactorContext*>> factors = {{right->axisTerm()->sign, right->axisTerm()->axisFactor()}};
+    for (P::SignedAxisTermContext* term : right->signedAxisTerm()) factors.emplace_back(term->sign, term->axisFactor());
+    for (const auto& [sign, factor] : factors) {
+      const double number = factor->NUMBER() ? number_value(*factor->NUMBER()->getSymbol()) : 1.0;
+      const double value = sign && text_of(sign) == "-" ? -number : number;
+      const int axis = factor->axis ? axis_index(factor->axis) : 0;
       if (axis < 0) return;
-      if (term->axis) definition.terms.push_back({static_cast<std::uint8_t>(axis), value});
+      if (factor->axis) definition.terms.push_back({static_cast<std::uint8_t>(axis), value});
       else definition.offset_mu += value;
     }
     if (definition.terms.empty()) {
@@ -265,17 +267,18 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
 
 void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
   const source::Span span = span_of(online);
-  if (!online->pointerTarget()) return lower_pointer_query(online, out);
+  P::PointerTargetContext* target = online->pointedAt() ? online->pointedAt()->pointerTarget() : nullptr;
+  if (!target) return lower_pointer_query(online, out);
   bytecode::PointerDefinition definition;
   if (online->LETTER_M()) {
     definition.first_m = static_cast<std::int32_t>(whole_number(token_of(online->NUMBER(0)), bytecode::kMCount - 1).value_or(0));
     const auto count = online->NUMBER().size() > 1 ? whole_number(token_of(online->NUMBER(1)), bytecode::kMCount).value_or(1) : 1;
     definition.last_m = static_cast<std::int32_t>(std::min<std::int64_t>(definition.first_m + std::max<std::int64_t>(count, 1) - 1, bytecode::kMCount - 1));
-    if (count > 1 && !online->pointerTarget()->STAR()) diagnostics_.error("PM3012", span, "a range of pointers can only be made self-referenced: ->*");
-    return out.push_back(lower_pointer(online->pointerTarget(), span, definition));
+    if (count > 1 && !target->STAR()) diagnostics_.error("PM3012", span, "a range of pointers can only be made self-referenced: ->*");
+    return out.push_back(lower_pointer(target, span, definition));
   }
   definition.first_m = definition.last_m = -1;
-  ir::StmtPtr statement = lower_pointer(online->pointerTarget(), span, definition);
+  ir::StmtPtr statement = lower_pointer(target, span, definition);
   auto& node = std::get<ir::DefinePointer>(statement->node);
   node.name = online->reference()->NAME() ? text_of(token_of(online->reference()->NAME())) : std::string();
   node.name_span = span_of(online->reference());

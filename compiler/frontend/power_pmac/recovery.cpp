@@ -128,7 +128,8 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     const auto expected = error.getExpectedTokens();
     const std::string wanted = expected.size() == 1 ? describe_token(static_cast<std::size_t>(expected.getSingleElement())) : std::string();
     const antlr4::Token* before = parser.getTokenStream()->LT(-1);
-    const bool has_begun = before && parser.getContext()->start && before->getTokenIndex() >= parser.getContext()->start->getTokenIndex();
+    const antlr4::Token* begin = statement_begin(parser);
+    const bool has_begun = before && begin && before->getTokenIndex() >= begin->getTokenIndex();
     const bool ends_too_early = has_begun && before->getLine() != offending->getLine();
     if (ends_too_early) {
       const source::Span place = tree_.span_of(*before);
@@ -139,6 +140,15 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     } else {
       diagnostics_.error("PM2001", tree_.span_of(*offending), fmt::format("unexpected {}", quoted(*offending)));
     }
+  }
+
+  /// First token of the statement that the parser is in.
+  static const antlr4::Token* statement_begin(antlr4::Parser& parser) {
+    for (auto* context = parser.getContext(); context; context = dynamic_cast<antlr4::ParserRuleContext*>(context->parent)) {
+      const std::size_t rule = context->getRuleIndex();
+      if (rule == Parser::RuleStatement || rule == Parser::RuleOnline || rule == Parser::RuleOpenHeader || rule == Parser::RuleEntryPoint) return context->start;
+    }
+    return parser.getContext()->start;
   }
 
   bool describe_missing_brace(antlr4::Parser& parser, const antlr4::Token& offending) {

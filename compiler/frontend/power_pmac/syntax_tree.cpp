@@ -16,10 +16,12 @@ std::string as_ascii(std::string text) {
 class AmbiguityListener : public antlr4::BaseErrorListener {
  public:
   explicit AmbiguityListener(std::vector<std::string>& found) : found_(found) {}
-  void reportAmbiguity(antlr4::Parser* parser, const antlr4::dfa::DFA& dfa, std::size_t start, std::size_t, bool, const antlrcpp::BitSet&,
+  void reportAmbiguity(antlr4::Parser* parser, const antlr4::dfa::DFA& dfa, std::size_t start, std::size_t stop, bool, const antlrcpp::BitSet&,
                        antlr4::atn::ATNConfigSet*) override {
     const std::size_t rule = dfa.atnStartState->ruleIndex;
-    found_.push_back(std::to_string(parser->getTokenStream()->get(start)->getLine()) + ": " + parser->getRuleNames()[rule]);
+    std::string text;
+    for (std::size_t i = start; i <= stop; ++i) text += " " + parser->getTokenStream()->get(i)->getText();
+    found_.push_back(std::to_string(parser->getTokenStream()->get(start)->getLine()) + ": " + parser->getRuleNames()[rule] + ":" + text);
   }
 
  private:

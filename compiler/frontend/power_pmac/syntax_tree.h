@@ -38,7 +38,7 @@ std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names);
 /// Reports every syntax error to diagnostics; the tree then has gaps (rules with an exception).
 std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics);
 
-/// Parses with full-context prediction; every ambiguity is one text "line: rule".
+/// Parses with full-context prediction; every ambiguity is one text "line: rule: tokens".
 std::vector<std::string> find_ambiguities(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics);
 
 /// Finds nesting that would be too deep for the parser's stack. False: reported, do not parse.

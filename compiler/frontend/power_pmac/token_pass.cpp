@@ -1,10 +1,11 @@
 // What lines mean, told to the parser by tokens. The lexer's tokens go through this pass once:
 //   - JOIN is put between the words of one motion line (ta25 F200 X5 Y6), so that a word on the next line begins a statement;
-//   - every word behind a code letter or call on its line becomes LINE_WORD (G83 X1 P2, call 500 X1 Y2), so do P, Q and L behind axis words;
+//   - every word behind a code letter or call on its line becomes LINE_WORD (G83 X1 P2, call 500 X1 Y2), so do F, P, Q and L behind axis words;
 //   - LINE_END is put behind a line with cexec, cskip or cx, which act on the rest of their line;
 //   - C, I and R become AXIS, VECTOR and RADIUS where they are words of a move and not variables, M and D become CODE likewise;
 //     what they are shows by the assignment operator behind their number;
 //   - the words of normal and pset get types of their own;
+//   - & between operands becomes BIT_AND; elsewhere it addresses a coordinate system or a variable;
 //   - an else that an if follows becomes ELSE_IF;
 //   - an operator that begins a line, outside parentheses and not after another operator, is no binary operator: & addresses a
 //     coordinate system, < > % are commands, everything else cannot stand there; nor can a parenthesis, except behind if and its kind.
@@ -67,7 +68,10 @@ class TokenPass {
     if (type == T::OPEN || type == T::CLOSE) braces_ = 0;
     if (type == T::SEMICOLON || type == T::LEFT_BRACE || type == T::RIGHT_BRACE || type == T::OPEN || type == T::CLOSE) depth_ = 0;
     if (new_line && depth_ == 0) group_ = Group::kNone;
+    if ((new_line && !operand_wanted_) || type == T::SEMICOLON) expression_open_ = false;
     if (depth_ == 0) take_outside(type, new_line);
+    if (in_[at_]->getType() == T::AMPERSAND && !operand_wanted_ && (in_buffer_ || depth_ > 0 || expression_open_)) set_type(T::BIT_AND);
+    if (depth_ == 0 && is_assignment(type) && !is_step(type) && before_ != T::ON_J && before_ != T::JOG) expression_open_ = true;
     const bool is_other = in_[at_]->getType() == T::OTHER;
     if (!is_other && (type == T::LEFT || type == T::LEFT_BRACKET)) ++depth_;
     if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && depth_ > 0) --depth_;
@@ -92,6 +96,8 @@ class TokenPass {
     const bool condition_follows = before_ == T::IF || before_ == T::WHILE || before_ == T::SWITCH;
     if (new_line && in_buffer_ && type == T::LEFT && !behind_operator && !condition_follows) return set_type(T::OTHER);
     if (!in_buffer_ && type == T::AMPERSAND && addresses_coord()) return set_type(T::COORD);
+    const bool is_command = !in_buffer_ && !expression_open_ && before_ != T::LH && (type == percent() || type == less() || type == greater());
+    if (is_command) return set_type(type_at_line_start(type));
     if (!in_buffer_ || behind_operator) return;
     if (begins_line_word(type)) return take_line_word();
     if (is_move_word(type)) return take_move_word(type);
@@ -127,7 +133,7 @@ class TokenPass {
   bool begins_line_word(std::size_t type) const {
     if (!is_letter(type) || is_letter(before_)) return false;
     const bool in_line = group_ == Group::kCode || group_ == Group::kCall;
-    const bool for_cycle = group_ == Group::kMove && (type == T::VAR || type == T::LETTER);
+    const bool for_cycle = group_ == Group::kMove && (type == T::VAR || type == T::LETTER || type == T::LETTER_F);
     if ((!in_line && !for_cycle) || at_ + 1 >= in_.size()) return false;
     const std::size_t next = in_[at_ + 1]->getType();
     const bool value_follows = next == T::NUMBER || next == T::LEFT || next == T::PLUS || next == T::MINUS;
@@ -262,6 +268,7 @@ class TokenPass {
   int depth_ = 0;
   bool operand_wanted_ = false;
   bool in_buffer_ = false;
+  bool expression_open_ = false; // on line: behind the = of an assignment
   std::size_t at_once_line_ = 0; // line of a cx, whose rest is read as in a buffer
   int braces_ = 0;               // open blocks
   int open_lines_ = 0;           // cexec and cskip of the line at hand

@@ -131,7 +131,7 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
     if (kind) return {kind, run_length(word)};
     const bool stands_for_axis = last_[0] != T::AXIS && last_[0] != T::LETTER_C && last_end_ == begin;
-    if (stands_for_axis) return whole_name;
+    if (stands_for_axis) return {T::AXIS, word.size()};  // refused when it is found to be none
     axis_definition_ = false;
   }
   if (expect_name_ || (!is_rest && (names_.contains(word) || must_be_name(word, begin + word.size())))) return whole_name;

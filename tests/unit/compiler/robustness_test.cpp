@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> example_programs() {
   std::vector<std::string> texts;
-  for (const char* folder : {"/programs", "/tests/golden/ir", "/tests/golden/errors"}) {
+  for (const char* folder : {"/programs", "/tests/golden/ir", "/tests/golden/errors", "/tests/golden/lines", "/tests/golden/flow", "/tests/golden/motion", "/tests/golden/rotary"}) {
     for (const auto& entry : std::filesystem::directory_iterator(std::string(PMAC_SOURCE_DIR) + folder)) {
       if (!entry.is_regular_file() || entry.path().extension() == ".expect" || entry.path().extension() == ".md") continue;
       std::ifstream stream(entry.path(), std::ios::binary);

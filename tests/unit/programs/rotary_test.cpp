@@ -29,7 +29,7 @@ TEST_CASE("moves blend from one piece of a rotary buffer to the next", "[program
 
 TEST_CASE("a rotary buffer whose lines have run out goes on with those that come later", "[programs][rotary]") {
   ProgramBench bench("a.pmc", kSetUp);
-  bench.machine->at(100, "&1 open rotary inc X5 close");
+  bench.machine->at(100, "&1 open rotary rapid inc X5 close");
   bench.machine->at(3000, "&1 open rotary X2 close");
   bench.run("&1 b0 r");
   REQUIRE(bench.refusals.empty());
@@ -86,7 +86,7 @@ TEST_CASE("axes taken out of the feed-rate axes by nofrax do not count for F", "
   // X 3, Y 4 at F 1: 5 s with both as feed-rate axes, 3 s with X alone
   ProgramBench both("a.pmc", "&1 #1->X #2->Y\nopen prog 1\nlinear inc F1 ta1 ts0 X3 Y4\nclose\n");
   both.run("&1 b1 r");
-  ProgramBench x("a.pmc", "&1 #1->X #2->Y\nopen prog 1\nnofrax(Y,Z) linear inc F1 ta1 ts0 X3 Y4\nclose\n");
+  ProgramBench x("a.pmc", "&1 #1->X #2->Y\nCoord[1].AltFeedRate=100\nopen prog 1\nnofrax(Y,Z) linear inc F1 ta1 ts0 X3 Y4\nclose\n");
   x.run("&1 b1 r");
   CHECK(both.moves[0].end_ms - both.moves[0].start_ms == Approx(5000).margin(2));
   CHECK(x.moves[0].end_ms - x.moves[0].start_ms == Approx(3000).margin(2));
