@@ -16,6 +16,7 @@
 
 #include "compiler/bytecode/bytecode.h"
 #include "compiler/source/source.h"
+#include "compiler/source/warning_control.h"
 
 namespace pmac::compiler {
 
@@ -27,7 +28,7 @@ struct InputFile {
 struct Options {
   std::vector<std::string> include_dirs;
   std::vector<std::pair<std::string, std::string>> defines;  // -D name[=text]
-  bool extra_warnings = false;                               // -Wextra: elements that are stored only, ...
+  source::WarningOptions warnings;                           // -W...
 };
 
 class Session {

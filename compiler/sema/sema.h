@@ -23,7 +23,7 @@ struct Project {
   std::set<std::string> lexed_names;      // names the front end saw a declaration of, even a wrong one
 };
 
-struct Settings { bool extra_warnings = false; bool online = false; };
+struct Settings { bool online = false; };
 
 /// Declares the global names and programs of a unit; call for every unit before check().
 void declare(ir::Unit& unit, Project& project, source::Diagnostics& diagnostics);

@@ -34,11 +34,11 @@ bool Preprocessor::take_directive(const Tokens& line) {
   const bool known = std::find(kDirectives.begin(), kDirectives.end(), word.text) != kDirectives.end();
   if (!known) {
     const std::vector<std::string_view> names(kDirectives.begin(), kDirectives.end());
-    const std::string_view near = word.text.size() > 3 ? source::nearest_word(word.text, names) : std::string_view();
-    if (near.empty()) return false;
+    const source::Guess near = word.text.size() > 3 ? source::guess_word(word.text, names) : source::Guess{};
+    if (near.word.empty()) return false;
     if (is_active()) {
-      auto& error = diagnostics_.error("PM1003", source::join(line[first].span, word.span), fmt::format("unknown directive #{}; did you mean #{}?", word.text, near));
-      error.fix = source::FixIt{word.span, std::string(near)};
+      auto& error = diagnostics_.error("PM1003", source::join(line[first].span, word.span), fmt::format("unknown directive #{}; did you mean #{}?", word.text, near.word));
+      error.fix = source::guess_fix(word.span, near);
     }
     return true;
   }
