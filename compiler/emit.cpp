@@ -29,6 +29,11 @@ std::string element_indices(const bytecode::ElementInfo& info) {
   return text.empty() ? "-" : text;
 }
 
+std::string element_default(const bytecode::ElementInfo& info) {
+  if (info.type == bytecode::ElementType::kMask) return fmt::format("${:x}", static_cast<std::uint64_t>(info.default_value));
+  return info.default_value == bytecode::kPushm ? "Sys.pushm" : fmt::format("{}", info.default_value);
+}
+
 }  // namespace
 
 std::string emit_tokens(Session& session, const InputFile& file) { return session.state().frontend.tokens(file.name, file.text); }
@@ -49,12 +54,11 @@ std::string emit_symbols(const bytecode::Module& module) {
 
 std::string emit_elements() {
   std::string out;
-  constexpr std::string_view kAccess[] = {"saved", "work", "status"};
   for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) {
     const bytecode::ElementInfo& info = bytecode::element_info(static_cast<bytecode::ElementId>(i));
-    const bool acts = info.simulation == bytecode::ElementSimulation::kActs;
-    out += fmt::format("{} | {} | {} | {} | {} | {} | {}\n", info.name, element_indices(info), info.default_value, info.unit.empty() ? "-" : info.unit,
-                       kAccess[static_cast<std::size_t>(info.access)], acts ? "simulated" : "stored", info.meaning);
+    out += fmt::format("{} | {} | {} | {} | {} | {} | {} | {}\n", info.name, element_indices(info), element_type_name(info.type), element_default(info),
+                       info.unit.empty() ? "-" : info.unit, element_access_name(info.access), element_simulation_name(info.simulation),
+                       info.meaning.empty() ? "-" : info.meaning);
   }
   return out;
 }

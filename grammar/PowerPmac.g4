@@ -189,7 +189,7 @@ programName : NUMBER | NAME ;
 numberList : numberItem (',' numberItem)* ;
 numberItem : NUMBER ('..' NUMBER)? | '(' expression ')' | '*' ;
 plcList : plcItem (',' plcItem)* ;
-plcItem : NUMBER ('..' NUMBER)? | NAME | '(' expression ')' ;
+plcItem : NUMBER ('..' NUMBER)? | NAME | '(' expression ')' | '*' ;
 
 jogAction
   : operation=('+' | '-' | '/') numberList?

@@ -189,6 +189,13 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kMotorHomePos: s_.motors[a.index[0]].home_position_mu = value; return Flow::kContinue;
     case ElementId::kMotorHomeComplete: s_.motors[a.index[0]].home_complete = value != 0; return Flow::kContinue;
     case ElementId::kGatherEnable: return enable_gathering(thread, value);
+    case ElementId::kCoordDesTimeBase: {
+      const std::string refusal = s_.coord(static_cast<int>(a.index[0])).set_time_base(s_.now_ms, value / s_.period_ms());
+      if (refusal.empty()) return Flow::kContinue;
+      if (runner.kind != RunnerKind::kOnline) return fault(thread, FaultKind::kRunTime, refusal);
+      s_.refuse(element_text(a), refusal);
+      return Flow::kContinue;
+    }
     case ElementId::kCoordErrorStatus:
       s_.elements.assign(a, value);
       if (value == 0) return Flow::kContinue;

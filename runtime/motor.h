@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "compiler/bytecode/bytecode.h"
+#include "runtime/coordinate/time_base.h"
 #include "runtime/motion/profile.h"
 
 namespace pmac::runtime {
@@ -16,6 +17,7 @@ struct Motor {
   int number = 0;
   Source source = Source::kRest;
   motion::MotorProfile profile;
+  const TimeBase* clock = nullptr; // that the profile runs by; null: the machine's time
   double position_mu = 0;          // at the last servo tick or event
   double velocity_mu_ms = 0;       // of path motors, at the last event
   double rest_since_ms = -std::numeric_limits<double>::infinity();
@@ -30,17 +32,30 @@ struct Motor {
 
   bool moving() const { return source != Source::kRest; }
 
+  double profile_time(double time_ms) const { return clock ? clock->path_at(time_ms) : time_ms; }
   double position_at(double time_ms) const {
-    return source == Source::kProfile ? profile.position_mu(time_ms) : position_mu;
+    return source == Source::kProfile ? profile.position_mu(profile_time(time_ms)) : position_mu;
   }
   double velocity_at(double time_ms) const {
-    if (source == Source::kProfile) return profile.velocity_mu_ms(time_ms);
+    if (source == Source::kProfile) return profile.velocity_mu_ms(profile_time(time_ms)) * (clock ? clock->rate_at(time_ms) : 1.0);
     return source == Source::kPath ? velocity_mu_ms : 0.0;
   }
-  /// Of a motor on a profile; a path motor's is not continued.
-  double accel_at(double time_ms) const { return source == Source::kProfile ? profile.accel_mu_ms2(time_ms) : 0.0; }
-  void follow(const motion::MotorProfile& p) {
+  /// Machine time of the profile's end; infinity for a jog without end, and while its clock stands.
+  double profile_end_ms() const { return clock ? clock->time_at(profile.end_ms()) : profile.end_ms(); }
+  /// Speed and acceleration by a clock, for a profile that goes on from here; of a path motor they are not continued.
+  double velocity_by(const TimeBase* by, double time_ms) const {
+    if (source != Source::kProfile) return 0;
+    if (by == clock) return profile.velocity_mu_ms(profile_time(time_ms));
+    const double rate = by ? by->rate_at(time_ms) : 1.0;
+    return rate > 0 ? velocity_at(time_ms) / rate : 0;
+  }
+  double accel_by(const TimeBase* by, double time_ms) const {
+    return source == Source::kProfile && by == clock ? profile.accel_mu_ms2(profile_time(time_ms)) : 0.0;
+  }
+  /// p is in the time of the clock.
+  void follow(const motion::MotorProfile& p, const TimeBase* by = nullptr) {
     profile = p;
+    clock = by;
     source = Source::kProfile;
     in_use = true;
   }
@@ -58,7 +73,7 @@ struct Motor {
   }
   /// A profile that has ended by time_ms becomes rest at its own end.
   void settle(double time_ms) {
-    if (source == Source::kProfile && profile.end_ms() <= time_ms) rest(profile.end_ms(), profile.target_mu());
+    if (source == Source::kProfile && profile_end_ms() <= time_ms) rest(profile_end_ms(), profile.target_mu());
   }
   /// Consecutive in-position checks at servo ticks up to time_ms.
   double checks_at_rest(double time_ms, double period_ms) const {

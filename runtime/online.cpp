@@ -76,6 +76,38 @@ void define_lookahead(const Call& call, CoordSystem& coord) {
   else coord.lookahead_buffer = static_cast<int>(segments);
 }
 
+/// Enabling closes the loops; disabling aborts the program and opens them, the motors stand where they are.
+void enable_motors(const Call& call, CoordSystem& coord, bool enabled) {
+  if (!enabled) coord.abort(call.s.now_ms);
+  for (int motor : coord.motors()) {
+    Motor& m = call.s.motors[static_cast<std::size_t>(motor)];
+    m.closed_loop = m.amplifier_enabled = enabled;
+    if (!enabled) m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
+  }
+}
+
+/// Starting, stopping and going on. A motion program that pauses or steps itself stops behind this line.
+Flow program_verb(const Call& call, CoordSystem& coord, int number) {
+  const double now = call.s.now_ms;
+  Runner& r = call.runner;
+  const bool inside = r.kind == RunnerKind::kMotionProgram && r.number == number;
+  switch (call.verb) {
+    case ControlVerb::kRun: call.refusal = coord.run(now); break;
+    case ControlVerb::kResume: call.refusal = coord.resume(now); break;
+    case ControlVerb::kForward: call.refusal = coord.resume(now); break;
+    case ControlVerb::kHold:
+    case ControlVerb::kQuickStop: call.refusal = coord.hold(now); break;
+    case ControlVerb::kPause:
+      if (inside) return coord.pause_from_inside(r.thread);
+      call.refusal = coord.pause(now);
+      break;
+    default:
+      if (inside) return coord.pause_from_inside(r.thread);
+      call.refusal = coord.step(now);
+  }
+  return Flow::kContinue;
+}
+
 Flow coord_verb(const Call& call) {
   const int number = number_or(call, own_coord(call), bytecode::kMaxCoords, "coordinate system");
   if (number < 0) return Flow::kContinue;
@@ -87,19 +119,23 @@ Flow coord_verb(const Call& call) {
       begin_coord(call, coord);
       if (call.refusal.empty()) call.refusal = coord.run(call.s.now_ms);
       return Flow::kContinue;
-    case ControlVerb::kRun: call.refusal = coord.run(call.s.now_ms); return Flow::kContinue;
+    case ControlVerb::kRun:
+    case ControlVerb::kResume:
+    case ControlVerb::kForward:
+    case ControlVerb::kHold:
+    case ControlVerb::kQuickStop:
+    case ControlVerb::kPause:
+    case ControlVerb::kStep: return program_verb(call, coord, number);
+    case ControlVerb::kTimeBase: call.refusal = coord.set_time_base(call.s.now_ms, call.argument(1) / 100); return Flow::kContinue;
+    case ControlVerb::kReportTimeBase: call.s.answer(fmt::format("{}", coord.time_base().rate_at(call.s.now_ms) * 100)); return Flow::kContinue;
+    case ControlVerb::kRetrace:
+      call.refusal = "error #20: ILLEGAL CMD: retracing the path backwards (<) is not simulated; > and r go on forwards";
+      return Flow::kContinue;
     case ControlVerb::kPmatch: call.refusal = coord.match_positions(call.s.now_ms); return Flow::kContinue;
     case ControlVerb::kDefineLookahead: define_lookahead(call, coord); return Flow::kContinue;
     case ControlVerb::kDeleteLookahead: coord.lookahead_buffer = 0; return Flow::kContinue;
-    case ControlVerb::kEnable:
-    case ControlVerb::kDisable:
-      if (call.verb == ControlVerb::kDisable) coord.abort(call.s.now_ms);
-      for (int motor : coord.motors()) {
-        Motor& m = call.s.motors[static_cast<std::size_t>(motor)];
-        m.closed_loop = m.amplifier_enabled = call.verb == ControlVerb::kEnable;
-        if (call.verb == ControlVerb::kDisable) m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
-      }
-      return Flow::kContinue;
+    case ControlVerb::kEnable: enable_motors(call, coord, true); return Flow::kContinue;
+    case ControlVerb::kDisable: enable_motors(call, coord, false); return Flow::kContinue;
     case ControlVerb::kReportCoordPosition: {
       const AxisVector position = coord.commanded_position(call.s.now_ms);
       std::string text;
@@ -118,15 +154,22 @@ motion::JogParameters jog_parameters(const Machine::State& s, int motor) {
   return {s.elements.get(ElementId::kMotorJogSpeed, n), s.elements.get(ElementId::kMotorJogTa, n), s.elements.get(ElementId::kMotorJogTs, n)};
 }
 
+/// Jogs of motors that belong to a coordinate system run by its time base. User's Manual p693.
+const TimeBase* clock_of(const Call& call, const Motor& m) {
+  return m.coord >= 0 ? call.s.coord(m.coord).clock_for_motion(call.s.now_ms) : nullptr;
+}
+
+double clock_ms(const TimeBase* clock, double time_ms) { return clock ? clock->path_at(time_ms) : time_ms; }
+
 /// Starts or re-targets a jog; a jog counts as one move from rest to rest.
-void jog(const Call& call, Motor& m, const motion::MotorProfile& profile) {
+void jog(const Call& call, Motor& m, const motion::MotorProfile& profile, const TimeBase* clock) {
   if (!m.moving()) {
     m.jogging = true;
     m.jog_start_ms = call.s.now_ms;
     m.jog_start_mu = m.position_mu;
     m.jog_source = call.runner.thread.source();
   }
-  m.follow(profile);
+  m.follow(profile, clock);
 }
 
 void jog_to(const Call& call, Motor& m, double target_mu) {
@@ -135,12 +178,24 @@ void jog_to(const Call& call, Motor& m, double target_mu) {
     return;
   }
   const double now = call.s.now_ms;
-  jog(call, m, motion::MotorProfile::move(now, m.position_at(now), m.velocity_at(now), target_mu, jog_parameters(call.s, m.number), m.accel_at(now)));
+  const TimeBase* clock = clock_of(call, m);
+  jog(call, m, motion::MotorProfile::move(clock_ms(clock, now), m.position_at(now), m.velocity_by(clock, now), target_mu,
+                                          jog_parameters(call.s, m.number), m.accel_by(clock, now)), clock);
+}
+
+void jog_stop(const Call& call, Motor& m) {
+  if (!m.moving()) return;
+  const double now = call.s.now_ms;
+  const TimeBase* clock = clock_of(call, m);
+  m.follow(motion::MotorProfile::stop(clock_ms(clock, now), m.position_at(now), m.velocity_by(clock, now), jog_parameters(call.s, m.number),
+                                      m.accel_by(clock, now)), clock);
 }
 
 void jog_endless(const Call& call, Motor& m, int direction) {
   const double now = call.s.now_ms;
-  jog(call, m, motion::MotorProfile::jog(now, m.position_at(now), m.velocity_at(now), direction, jog_parameters(call.s, m.number), m.accel_at(now)));
+  const TimeBase* clock = clock_of(call, m);
+  jog(call, m, motion::MotorProfile::jog(clock_ms(clock, now), m.position_at(now), m.velocity_by(clock, now), direction,
+                                         jog_parameters(call.s, m.number), m.accel_by(clock, now)), clock);
 }
 
 bool may_jog(const Call& call, const Motor& m) {
@@ -183,9 +238,7 @@ Flow motor_verb(const Call& call) {
   switch (call.verb) {
     case ControlVerb::kJogPlus: jog_endless(call, m, 1); break;
     case ControlVerb::kJogMinus: jog_endless(call, m, -1); break;
-    case ControlVerb::kJogStop:
-      if (m.moving()) m.follow(motion::MotorProfile::stop(now, m.position_at(now), m.velocity_at(now), jog_parameters(call.s, number), m.accel_at(now)));
-      break;
+    case ControlVerb::kJogStop: jog_stop(call, m); break;
     case ControlVerb::kJogTo: jog_to(call, m, value); break;
     case ControlVerb::kJogToAndKeep: m.prejog_mu = value; jog_to(call, m, value); break;
     case ControlVerb::kJogBy:
@@ -233,13 +286,48 @@ bool is_motor_verb(ControlVerb v) {
 
 bool is_plc_verb(ControlVerb v) { return v >= ControlVerb::kEnablePlc && v <= ControlVerb::kStepPlc; }
 
+/// What the list * stands for: motors that are in use, coordinate systems with motors or a program, PLC programs that exist.
+std::vector<double> everything(Machine::State& s, ControlVerb verb) {
+  std::vector<double> numbers;
+  if (is_plc_verb(verb)) {
+    for (const auto& [number, program] : s.plc_programs) numbers.push_back(number);
+  } else if (is_motor_verb(verb)) {
+    for (const Motor& m : s.motors)
+      if (m.in_use) numbers.push_back(m.number);
+  } else {
+    for (int n = 0; n < bytecode::kMaxCoords; ++n)
+      if (!s.coord(n).motors().empty() || s.coord(n).program_active()) numbers.push_back(n);
+  }
+  return numbers;
+}
+
+/// The verb for everything of its kind; the first refusal is the answer. A verb that the program has to wait for, once for each, is refused.
+Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
+  std::vector<double> one(arguments.begin(), arguments.end());
+  Flow result = Flow::kContinue;
+  for (const double number : everything(s, verb)) {
+    if (result == Flow::kSuspend) {
+      refusal = fmt::format("error #21: ILLEGAL PARAMETER: the program waits for {}; list the motors instead of *", control_verb_name(verb));
+      return Flow::kContinue;
+    }
+    one[0] = number;
+    std::string reason;
+    const Flow flow = execute_control(s, runner, verb, one, reason);
+    if (flow != Flow::kContinue) result = flow;
+    if (refusal.empty()) refusal = reason;
+  }
+  return result;
+}
+
 }  // namespace
 
 Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
+  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer;
+  if (all) return execute_for_all(s, runner, verb, arguments, refusal);
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);
-  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) return not_simulated(call);
+  if (verb >= ControlVerb::kReportPointer) return not_simulated(call);
   return coord_verb(call);
 }
 

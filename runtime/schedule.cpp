@@ -41,10 +41,14 @@ double Machine::State::rti_at_or_after_ms(double time_ms) const {
   return tick_ms(n * every);
 }
 
+/// A program that is paused, held or at 0 % waits for a command; it keeps the run alive while a PLC program may give one.
 bool Machine::State::anything_runs() const {
-  const auto runs = [](const auto& c) { return c->program_running(); };
-  const auto moves = [](const Motor& m) { return m.moving(); };
-  return !timed.empty() || std::any_of(coords.begin(), coords.end(), runs) || std::any_of(motors.begin(), motors.end(), moves);
+  const auto proceeds = [this](const auto& c) { return c->proceeding(now_ms); };
+  const auto moves = [this](const Motor& m) { return m.source == Motor::Source::kProfile && !(m.clock && m.clock->stands(now_ms)); };
+  if (!timed.empty() || std::any_of(coords.begin(), coords.end(), proceeds) || std::any_of(motors.begin(), motors.end(), moves)) return true;
+  const bool waits = std::any_of(coords.begin(), coords.end(), [](const auto& c) { return c->program_active(); }) ||
+                     std::any_of(motors.begin(), motors.end(), [](const Motor& m) { return m.moving(); });
+  return waits && std::any_of(plcs.begin(), plcs.end(), [](const Plc& plc) { return plc.running; });
 }
 
 void Machine::State::update_idle(double time_ms) {
@@ -57,7 +61,7 @@ double Machine::State::next_event_ms(double limit_ms) {
   double next = limit_ms;
   for (const auto& c : coords) next = std::min(next, c->next_event_ms());
   for (const Motor& m : motors)
-    if (m.source == Motor::Source::kProfile) next = std::min(next, m.profile.end_ms());
+    if (m.source == Motor::Source::kProfile) next = std::min(next, m.profile_end_ms());
   if (!timed.empty()) next = std::min(next, timed.front().time_ms);
   bool foreground = false, background = false;
   for (const Plc& plc : plcs) {
@@ -179,8 +183,9 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
     now_ms = next;
   }
   outcome.time_ms = now_ms;
+  for (const auto& c : coords) c->report_unfinished(now_ms, true);
   for (const auto& c : coords)
-    if (c->program_running())
+    if (c->program_active())
       outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->runner().thread.source())));
   sample_to(tick_ms(tick) >= now_ms ? now_ms : tick_ms(tick + 1));
   outcome.ticks = tick;

@@ -52,9 +52,12 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
     case ElementId::kCoordClosedLoop: return all_motors(s, c, ElementId::kMotorClosedLoop);
     case ElementId::kCoordAmpEna: return all_motors(s, c, ElementId::kMotorAmpEna);
     case ElementId::kCoordCsolve: return c.map().solvable();
-    case ElementId::kCoordProgRunning:
-    case ElementId::kCoordProgProceeding:
-    case ElementId::kCoordProgActive: return c.program_running();
+    case ElementId::kCoordProgRunning: return c.program_running();
+    case ElementId::kCoordProgProceeding: return c.program_running() && !c.time_base().stands(s.now_ms);
+    case ElementId::kCoordProgActive: return c.program_active();
+    case ElementId::kCoordFeedHold: return static_cast<double>(c.time_base().hold_state(s.now_ms));
+    case ElementId::kCoordTimeBase: return c.time_base().rate_at(s.now_ms) * s.period_ms();
+    case ElementId::kCoordDesTimeBase: return c.time_base().override_rate() * s.period_ms();
     case ElementId::kCoordSegEnabled: return s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
     case ElementId::kCoordLookAheadActive:
       return c.lookahead_buffer > 0 && s.elements.get(ElementId::kCoordLHDistance, a.index[0]) > 1 &&
@@ -90,6 +93,7 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
     case ElementId::kPlcRunning: return s.plcs[a.index[0]].running;
     default: break;
   }
+  if (bytecode::element_info(a.id).type == bytecode::ElementType::kSymbol) return encode_address(a);  // Sys.pushm is where it is
   if (belongs_to(a.id, ElementId::kMotorServoCtrl, ElementId::kMotorCoord)) return motor_value(s, a.id, s.motors[a.index[0]]);
   if (belongs_to(a.id, ElementId::kCoordTa, ElementId::kCoordCdPos)) return coord_value(s, a);
   return s.elements.get(a);

@@ -1,14 +1,12 @@
-// The vocabulary of the bytecode: names and rows made from opcode.def, function.def and element.def, and the names of the
+// The vocabulary of the bytecode: names and rows made from opcode.def and function.def, and the names of the
 // few enumerations that are written out in bytecode.h.
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <string>
-#include <unordered_map>
 
 #include "compiler/bytecode/bytecode.h"
 #include "compiler/bytecode/control.h"
-#include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/opcode.h"
 
@@ -22,7 +20,6 @@ constexpr std::size_t index_of(Enum value) {
 
 constexpr std::size_t kOpcodeCount = index_of(Opcode::kCount);
 constexpr std::size_t kFunctionCount = index_of(Function::kCount);
-constexpr std::size_t kElementCount = index_of(ElementId::kCount);
 
 constexpr std::array<OpcodeInfo, kOpcodeCount> kOpcodes = {{
 #define OPCODE(Name, text, format, meaning) {text, OperandFormat::k##format, meaning},
@@ -36,18 +33,8 @@ constexpr std::array<FunctionInfo, kFunctionCount> kFunctions = {{
 #undef FUNCTION
 }};
 
-constexpr std::array<ElementInfo, kElementCount> kElements = {{
-#define ELEMENT(Id, name, count0, count1, count2, Type, default_value, unit, Access, Simulation, meaning) \
-  {name, {count0, count1, count2}, ElementType::k##Type, default_value, unit, ElementAccess::k##Access,   \
-   ElementSimulation::k##Simulation, meaning},
-#include "compiler/bytecode/element.def"
-#undef ELEMENT
-}};
-
 constexpr OpcodeInfo kUnknownOpcode = {"?", OperandFormat::kNone, "no such instruction"};
 constexpr FunctionInfo kUnknownFunction = {"?", 0, "no such function"};
-constexpr ElementInfo kUnknownElement = {
-    "?", {0, 0, 0}, ElementType::kDouble, 0, "", ElementAccess::kStatus, ElementSimulation::kStored, "no such element"};
 
 constexpr std::array<std::string_view, kAxisCount> kAxisNames = {
     "A",  "B",  "C",  "U",  "V",  "W",  "X",  "Y",  "Z",  "AA", "BB", "CC", "DD", "EE", "FF", "GG",
@@ -69,31 +56,20 @@ constexpr std::array<VerbRow, index_of(ControlVerb::kCount)> kVerbs = {{
     {"abort", 1}, {"begin", 2}, {"run", 1}, {"step", 1}, {"start", 2}, {"pause", 1}, {"hold", 1}, {"resume", 1},
     {"quick_stop", 1}, {"retrace", 1}, {"forward", 1}, {"enable", 1}, {"disable", 1}, {"ddisable", 1}, {"adisable", 1},
     {"time_base", 2}, {"pmatch", 1}, {"pset", 2}, {"pclr", 1}, {"pstore", 1}, {"pload", 1},
+    {"pread", 2}, {"vread", 2}, {"dread", 2}, {"fread", 2}, {"tread", 2},
     {"define_lookahead", 2}, {"delete_lookahead", 1},
     {"jog+", 1}, {"jog-", 1}, {"jog/", 1}, {"jog=", 2}, {"jog:", 2}, {"jog^", 2}, {"jog==", 2}, {"jog_return", 1},
+    {"jog=^", 3}, {"jog:^", 3}, {"jog^^", 3},
     {"home", 1}, {"homez", 1}, {"kill", 1}, {"dkill", 1}, {"phase", 1}, {"out", 2},
     {"enable_plc", 1}, {"disable_plc", 1}, {"pause_plc", 1}, {"resume_plc", 1}, {"step_plc", 1},
     {"report_position", 1}, {"report_velocity", 1}, {"report_desired", 1}, {"report_following_error", 1},
     {"report_status", 1}, {"report_coord_position", 1}, {"report_coord_status", 1}, {"report_time_base", 1},
-    {"reset", 0}, {"save", 0},
+    {"report_pointer", 1}, {"sendallcmds", 0}, {"reset", 0}, {"save", 0},
 }};
 
 template <std::size_t N>
 std::string_view name_at(const std::array<std::string_view, N>& names, std::size_t index) {
   return index < N ? names[index] : std::string_view("?");
-}
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char ch) { return static_cast<char>(std::tolower(ch)); });
-  return result;
-}
-
-std::unordered_map<std::string, ElementId> make_element_names() {
-  std::unordered_map<std::string, ElementId> names;
-  for (std::size_t i = 0; i < kElementCount; ++i) names.emplace(lower_case(kElements[i].name), static_cast<ElementId>(i));
-  return names;
 }
 
 }  // namespace
@@ -130,22 +106,6 @@ const OpcodeInfo& opcode_info(Opcode opcode) {
 
 const FunctionInfo& function_info(Function function) {
   return index_of(function) < kFunctionCount ? kFunctions[index_of(function)] : kUnknownFunction;
-}
-
-const ElementInfo& element_info(ElementId id) {
-  return index_of(id) < kElementCount ? kElements[index_of(id)] : kUnknownElement;
-}
-
-int ElementInfo::index_count() const {
-  int count = 0;
-  while (count < kMaxElementIndices && index_counts[count] > 0) ++count;
-  return count;
-}
-
-ElementId find_element(std::string_view pattern) {
-  static const std::unordered_map<std::string, ElementId> names = make_element_names();
-  const auto found = names.find(lower_case(pattern));
-  return found == names.end() ? kNoElement : found->second;
 }
 
 }  // namespace pmac::bytecode

@@ -61,9 +61,12 @@ struct Unary { Operator op; ExprPtr operand; };
 struct Binary { Operator op; ExprPtr left, right; };
 struct FunctionCall { bytecode::Function function = bytecode::kNoFunction; std::vector<ExprPtr> arguments; };
 
+/// &P100, &Table(0), &Sys.Cdata[40]: where the variables or bytes of a vector, matrix or text begin.
+struct AddressOf { ExprPtr place; };
+
 struct Expr {
   Span span;
-  std::variant<Number, Text, Variable, NameUse, Element, Unary, Binary, FunctionCall> node;
+  std::variant<Number, Text, Variable, NameUse, Element, Unary, Binary, FunctionCall, AddressOf> node;
 };
 
 ExprPtr make_number(double value, Span span);
@@ -112,8 +115,9 @@ struct Delay { ExprPtr time_ms; };
 
 /// One verb for one thing, or for each of several: see ControlVerb. Missing arguments are nan.
 struct Control { ControlVerb verb{}; std::vector<ExprPtr> arguments; };
-struct Command { std::string text; };
-struct Send { int port = 0; std::string text; };
+/// text: a printf format where values follow it.
+struct Command { std::string text; std::vector<ExprPtr> values; };
+struct Send { int port = 0; std::string text; std::vector<ExprPtr> values; };
 
 // load stream only
 struct AddressCoord { ExprPtr number; };

@@ -1,6 +1,8 @@
 // The text form of the IR: one statement a line, nested ones indented; bound names show what they are bound to.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
@@ -42,6 +44,7 @@ struct ExprPrinter {
   std::string operator()(const Unary& node) const { return fmt::format("({}{})", operator_text(node.op), print(*node.operand)); }
   std::string operator()(const Binary& node) const { return fmt::format("({} {} {})", print(*node.left), operator_text(node.op), print(*node.right)); }
   std::string operator()(const FunctionCall& node) const { return fmt::format("{}({})", bytecode::function_info(node.function).name, list(node.arguments)); }
+  std::string operator()(const AddressOf& node) const { return "&" + print(*node.place); }
 };
 
 std::string axis_list(std::uint32_t mask) {
@@ -130,9 +133,14 @@ class StmtPrinter {
   }
   void operator()(const Dwell& node) { line(fmt::format("dwell {}", print(*node.time_ms))); }
   void operator()(const Delay& node) { line(fmt::format("delay {}", print(*node.time_ms))); }
-  void operator()(const Control& node) { line(fmt::format("{} ({})", bytecode::control_verb_name(node.verb), list(node.arguments))); }
-  void operator()(const Command& node) { line(fmt::format("cmd \"{}\"", node.text)); }
-  void operator()(const Send& node) { line(fmt::format("send {} \"{}\"", node.port, node.text)); }
+  void operator()(const Control& node) {
+    const auto number = node.arguments.empty() || !node.arguments[0] ? std::nullopt : constant_value(*node.arguments[0]);
+    std::string arguments = list(node.arguments);
+    if (number && std::isinf(*number)) arguments.replace(0, 3, "all");  // inf: the list *
+    line(fmt::format("{} ({})", bytecode::control_verb_name(node.verb), arguments));
+  }
+  void operator()(const Command& node) { line(fmt::format("cmd \"{}\"{}", node.text, with(node.values))); }
+  void operator()(const Send& node) { line(fmt::format("send {} \"{}\"{}", node.port, node.text, with(node.values))); }
   void operator()(const AddressCoord& node) { line(fmt::format("address coord {}", print(*node.number))); }
   void operator()(const AddressMotor& node) { line(fmt::format("address motor {}", print(*node.number))); }
   void operator()(const DefineAxis& node) {

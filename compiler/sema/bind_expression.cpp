@@ -108,7 +108,11 @@ bool Binder::is_assignable(const ir::Expr& expr) const {
 void Binder::bind_expr(ir::Expr& expr) {
   if (auto* variable = std::get_if<ir::Variable>(&expr.node)) return bind_variable(*variable, expr.span);
   if (std::holds_alternative<ir::NameUse>(expr.node)) return bind_name(expr);
-  if (auto* element = std::get_if<ir::Element>(&expr.node)) return bind_element(*element, expr.span);
+  if (auto* element = std::get_if<ir::Element>(&expr.node)) {
+    bind_element(*element, expr.span);
+    if (element->element != bytecode::kNoElement && !element->address) note_uncomputed_element(*element, expr.span);
+    return;
+  }
   if (auto* unary = std::get_if<ir::Unary>(&expr.node)) return unary->op == Operator::kNot ? bind_condition(*unary->operand) : bind_value(*unary->operand);
   if (auto* binary = std::get_if<ir::Binary>(&expr.node)) {
     const bool logical = binary->op == Operator::kAnd || binary->op == Operator::kOr;
@@ -212,6 +216,8 @@ void Binder::bind_element(ir::Element& element, const source::Span& span) {
   element.element = bytecode::find_element(element.pattern);
   if (element.element == bytecode::kNoElement) return report_unknown_element(element, span);
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
+  const bool address_only = info.type == bytecode::ElementType::kStructure && !element.address;
+  if (address_only) diagnostics_.error("PM3055", span, fmt::format("{} is a structure; name one of its elements, or {}.a for its address", info.name, info.name));
   for (std::size_t i = 0; i < element.indices.size(); ++i) check_element_index(*element.indices[i], info.index_counts[i], info.name);
 }
 
@@ -252,6 +258,14 @@ void Binder::note_stored_element(const ir::Element& element, const source::Span&
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
   if (info.simulation != bytecode::ElementSimulation::kStored || !project_.reported_elements.insert(std::string(info.name)).second) return;
   diagnostics_.warning("PM6010", span, fmt::format("the simulation stores {} and does not act on it", info.name));
+}
+
+/// Once for each element, where the program reads a status that stays at its default here.
+void Binder::note_uncomputed_element(const ir::Element& element, const source::Span& span) {
+  if (!settings_.extra_warnings) return;
+  const bytecode::ElementInfo& info = bytecode::element_info(element.element);
+  if (info.simulation != bytecode::ElementSimulation::kUnknown || !project_.reported_elements.insert(std::string(info.name)).second) return;
+  diagnostics_.warning("PM6012", span, fmt::format("the simulation does not compute {}; it reads {}", info.name, info.default_value));
 }
 
 void Binder::report_unknown(std::string_view name, const source::Span& span, std::string_view what) {

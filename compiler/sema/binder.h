@@ -76,6 +76,7 @@ class Binder {
   void report_unknown_element(const ir::Element& element, const source::Span& span);
   void report_unknown(std::string_view name, const source::Span& span, std::string_view what);
   void note_stored_element(const ir::Element& element, const source::Span& span);
+  void note_uncomputed_element(const ir::Element& element, const source::Span& span);
   bool is_assignable(const ir::Expr& expr) const;
 
   Project& project_;

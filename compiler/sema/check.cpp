@@ -239,7 +239,8 @@ void Binder::check_control_number(const ir::Control& node) {
   if (!value) return;
   const bool motor = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;
   const int most = (is_plc_verb(node.verb) ? bytecode::kMaxPlcs : motor ? bytecode::kMaxMotors : bytecode::kMaxCoords) - 1;
-  const bool fits = *value >= 0 && *value <= most && *value == std::floor(*value);
+  const bool all = std::isinf(*value) && *value > 0;
+  const bool fits = all || (*value >= 0 && *value <= most && *value == std::floor(*value));
   const char* thing = is_plc_verb(node.verb) ? "PLC program" : motor ? "motor" : "coordinate system";
   if (!fits) diagnostics_.error("PM3009", node.arguments[0]->span, fmt::format("the number of a {} is 0 to {}", thing, most));
 }

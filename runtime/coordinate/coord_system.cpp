@@ -1,5 +1,4 @@
-// Set-up and program control of a coordinate system. Source: axis definitions, User's Manual p501-510; program control and its
-// refusals, p689-698.
+// Set-up of a coordinate system. Source: axis definitions, User's Manual p501-510. Program control is in control.cpp.
 #include "runtime/coordinate/coord_system.h"
 
 #include <algorithm>
@@ -62,68 +61,6 @@ std::string CoordSystem::define(const bytecode::AxisDefinition& definition, int 
   return {};
 }
 
-std::string CoordSystem::begin(std::uint32_t number, std::int64_t label) {
-  if (program_running()) return "error #38: PROGRAM RUNNING: abort it first";
-  const auto it = machine_.progs.find(number);
-  if (it == machine_.progs.end()) return fmt::format("error #22: PROGRAM NOT IN BUFFER: there is no motion program {}", number);
-  pointed_ = it->second;
-  pointed_label_ = label;
-  return {};
-}
-
-std::string CoordSystem::run(double time_ms) {
-  if (program_running()) return "error #38: PROGRAM RUNNING: the coordinate system executes a program already";
-  if (!pointed_) return "error #39: NOT READY TO RUN: no program selected; use b{number} first";
-  for (int motor : motors_) {
-    const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    if (m.coord != number_) continue;
-    if (!m.closed_loop) return fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", motor);
-    if (machine_.elements.get(ElementId::kMotorServoCtrl, static_cast<unsigned>(motor)) <= 0)
-      return fmt::format("error #45: MOTOR NOT ACTIVE: Motor[{}].ServoCtrl is 0", motor);
-    if (m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
-  }
-  if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
-  if (motor_map().motors.empty())
-    machine_.warn(pointed_.program->source, fmt::format("coordinate system {} has no motors; the program runs dry", number_));
-  if (!runner_.thread.begin(pointed_, pointed_label_))
-    return fmt::format("error #35: INVALID LABEL: program {} has no label N{}", pointed_.program->number, pointed_label_);
-  runner_.thread.coord = number_;
-  runner_.thread.q = q.data();
-  machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
-  block_ = {};
-  stop_requested_ = false;
-  sync_.clear();
-  phase_ = Phase::kCalculating;
-  resume_ms_ = time_ms;
-  return {};
-}
-
-void CoordSystem::abort(double time_ms) {
-  std::vector<double> position(path_map_.motors.size()), velocity(path_map_.motors.size());
-  if (on_path_) pipeline_.sample(std::max(time_ms, sampled_to_ms_), 1.0, 1, position, velocity);
-  for (std::size_t i = 0; on_path_ && i < path_map_.motors.size(); ++i) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
-    m.position_mu = position[i];
-    m.velocity_mu_ms = velocity[i];
-  }
-  on_path_ = false;
-  for (int motor : motors_) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    if (m.coord != number_ || !m.moving()) continue;
-    const auto n = static_cast<unsigned>(motor);
-    const motion::JogParameters stop{0, machine_.elements.get(ElementId::kMotorAbortTa, n),
-                                     machine_.elements.get(ElementId::kMotorAbortTs, n)};
-    m.follow(motion::MotorProfile::stop(time_ms, m.position_at(time_ms), m.velocity_at(time_ms), stop));
-  }
-  runner_.thread.stop();
-  sync_.clear();
-  due_.clear();
-  pending_moves_.clear();
-  block_ = {};
-  phase_ = Phase::kIdle;
-  resume_ms_ = kNever;
-}
-
 void CoordSystem::fail(double time_ms, Fault fault) {
   abort(time_ms);
   machine_.elements.set(ElementId::kCoordErrorStatus, error_status(fault.kind), static_cast<unsigned>(number_));
@@ -131,7 +68,7 @@ void CoordSystem::fail(double time_ms, Fault fault) {
 }
 
 bool CoordSystem::executes(const bytecode::Program* program) const {
-  return program_running() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);
+  return program_active() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);
 }
 
 void CoordSystem::observe(motion::StageObservers observers) {

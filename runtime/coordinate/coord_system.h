@@ -2,10 +2,12 @@
 // motor positions. It decides when the program calculates on (ahead of motion) and when it waits (dwell, rapid, jump-back rule).
 //
 //   idle --run--> calculating <--> waiting for room (enough moves ahead)
-//                     |  dwell, rapid, loop without moves, end
+//                     |  dwell, rapid, loop without moves, pause, end
 //                     v
-//                 coming to rest --> dwelling | rapid move | next interrupt | idle
+//                 coming to rest --> dwelling | rapid move | next interrupt | paused | idle
 //
+// Everything on the path happens by the coordinate system's own clock (time_base.h); times of the pipeline and of its motors' profiles
+// are that clock's, times of events are the machine's.
 // Source: calculation ahead of motion, User's Manual p681-706; see docs/motion.md.
 #pragma once
 
@@ -17,6 +19,7 @@
 
 #include "kinematics/kinematics.h"
 #include "runtime/coordinate/modal.h"
+#include "runtime/coordinate/time_base.h"
 #include "runtime/machine.h"
 #include "runtime/motion/pipeline.h"
 #include "runtime/runner.h"
@@ -51,11 +54,27 @@ class CoordSystem {
 
   // --- program control; each answers a refusal ("error #22: ...") or empty -----------------------------------------------
   std::string begin(std::uint32_t number, std::int64_t label);
+  /// Starts at the pointer, or goes on after a pause or a hold.
   std::string run(double time_ms);
+  std::string resume(double time_ms);
+  /// One move, dwell or delay; a program that executes is paused.
+  std::string step(double time_ms);
+  /// Finishes what is calculated and waits at a programmed point.
+  std::string pause(double time_ms);
+  std::string hold(double time_ms);
+  /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
+  std::string set_time_base(double time_ms, double rate);
+  const TimeBase& time_base() const { return time_base_; }
+  /// A motor that belongs here gets a profile at time_ms: the clock it runs by.
+  const TimeBase* clock_for_motion(double time_ms);
   void abort(double time_ms);
   /// A run-time error: aborts, sets ErrorStatus and reports.
   void fail(double time_ms, Fault fault);
-  bool program_running() const { return phase_ != Phase::kIdle; }
+  bool program_running() const { return phase_ != Phase::kIdle && phase_ != Phase::kPaused; }
+  /// Executing, or waiting to go on.
+  bool program_active() const { return phase_ != Phase::kIdle; }
+  /// Executing, and going on by itself: not held, not at 0 %.
+  bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
@@ -64,6 +83,7 @@ class CoordSystem {
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
   void stop_program_from_inside() { stop_requested_ = true; }
+  Flow pause_from_inside(Thread& thread) { return stop_item(thread, AfterRest::kPause); }
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
 
@@ -76,6 +96,8 @@ class CoordSystem {
   bool on_path() const { return on_path_; }
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
   const std::vector<int>& path_motors() const { return path_map_.motors; }
+  /// Reports the moves that have begun and whose end is still to come: with the end that is planned where they go_on, else with time_ms.
+  void report_unfinished(double time_ms, bool go_on);
 
   // --- positions -----------------------------------------------------------------------------------------------------------
   /// pmatch: axis positions from the motors' commanded positions. Answers a refusal or empty.
@@ -90,11 +112,23 @@ class CoordSystem {
   void observe(motion::StageObservers observers);
 
  private:
-  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid };
-  enum class AfterRest { kDwell, kRapid, kHomeZero, kNextInterrupt, kEnd };
+  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kPaused };
+  enum class AfterRest { kDwell, kRapid, kHomeZero, kNextInterrupt, kPause, kEnd };
+
+  // control.cpp
+  std::string start(double time_ms);
+  std::string why_not_ready() const;
+  std::string go_on_after_pause(double time_ms, bool one_step);
+  void pause_here(double time_ms);
+  void drop_program();
+  void clock_changed(double time_ms);
+  std::string slope_of(bytecode::ElementId slew, double& slope_per_ms) const;
 
   // program.cpp
   void calculate(double time_ms);
+  void go_on(double time_ms);
+  double motors_end_ms() const;
+  void sample_by_clock(double start_ms, double period_ms, int count, std::span<double> position_mu);
   int commands_wanted() const;
   bool enough_ahead(double time_ms) const;
   double next_calculation_ms(double time_ms) const;
@@ -113,6 +147,7 @@ class CoordSystem {
   void perform_due(double time_ms);
   void perform_up_to(std::uint64_t move_id);
   void record(const MoveRecord& move);
+  void record_executed(double time_ms);
   motion::PipelineConfig config();
   motion::MotorMap motor_map();
 
@@ -133,7 +168,10 @@ class CoordSystem {
   Phase phase_ = Phase::kIdle;
   AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
-  bool stop_requested_ = false;
+  bool stop_requested_ = false, pause_requested_ = false;
+  bool stepping_ = false;           // pauses after one item
+  std::vector<double> paused_mu_;   // [motors_]
+  TimeBase time_base_;
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
@@ -148,12 +186,15 @@ class CoordSystem {
   int home_motor_ = -1;
   bytecode::SourceLine item_source_;
   AxisVector rapid_target_uu_{};
-  double item_start_ms_ = 0;
+  double item_start_ms_ = 0, rapid_length_uu_ = 0;
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };
   std::deque<PendingMove> pending_moves_;
   std::vector<motion::MoveTiming> timings_;
+  struct ExecutedMove { motion::MoveTiming timing; std::string_view mode; bytecode::SourceLine source; };
+  std::deque<ExecutedMove> executed_;  // planned in full; reported when they end
+  std::vector<double> sample_run_;     // of sample(), kept so that a block costs no allocation
   std::deque<SyncEntry> sync_;
   std::vector<motion::SyncTime> sync_times_;
   std::deque<motion::SyncTime> due_;   // ascending

@@ -95,6 +95,7 @@ Flow CoordSystem::end_block(Thread& thread) {
 
 Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
   item_source_ = thread.source();
+  if (stepping_) pause_requested_ = true;
   if (auto fault = come_to_rest(machine_.now_ms, then)) return give_up(thread, std::move(*fault));
   return Flow::kSuspend;
 }
@@ -119,6 +120,7 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   const bool delay = command.kind == motion::CommandKind::kDelay;
   pending_moves_.push_back({command.id, delay ? "delay" : move_mode_name(modal.mode), command.source});
   collect_timings();
+  if (stepping_) return stop_item(thread, AfterRest::kPause);
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
   moves_without_time_ = 0;
   resume_ms_ = next_calculation_ms(machine_.now_ms);
@@ -131,9 +133,10 @@ void CoordSystem::ensure_sequence(double time_ms) {
   motion::PipelineConfig set_up = config();
   path_map_ = set_up.map;
   lookahead_ = set_up.lookahead;
-  pipeline_.reset(set_up, calculated_uu_, time_ms);
+  const double path_ms = clock_for_motion(time_ms)->path_at(time_ms);
+  pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
-  sampled_to_ms_ = sequence_start_ms_ = time_ms;
+  sampled_to_ms_ = sequence_start_ms_ = path_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
 }
 
@@ -168,14 +171,16 @@ int CoordSystem::commands_wanted() const {
 }
 
 bool CoordSystem::enough_ahead(double time_ms) const {
-  if (pipeline_.horizon_ms() < machine_.next_rti_ms(time_ms)) return false;
-  return lookahead_ ? !pipeline_.wants_more_segments(time_ms) : pipeline_.commands_ahead(time_ms) >= commands_wanted();
+  if (pipeline_.horizon_ms() < time_base_.path_at(machine_.next_rti_ms(time_ms))) return false;
+  const double path_ms = time_base_.path_at(time_ms);
+  return lookahead_ ? !pipeline_.wants_more_segments(path_ms) : pipeline_.commands_ahead(path_ms) >= commands_wanted();
 }
 
 /// The first real-time interrupt at which enough_ahead() may have become false, and before the horizon.
 double CoordSystem::next_calculation_ms(double time_ms) const {
-  const double in_time_ms = pipeline_.horizon_ms() - 2 * machine_.rti_period_ms();
-  const double until_ms = std::min(pipeline_.enough_until_ms(commands_wanted()), in_time_ms);
+  const double in_time_ms = time_base_.time_at(pipeline_.horizon_ms()) - 2 * machine_.rti_period_ms();
+  const double until_ms = std::min(time_base_.time_at(pipeline_.enough_until_ms(commands_wanted())), in_time_ms);
+  if (until_ms == kNever) return kNever;
   const double next_ms = machine_.next_rti_ms(time_ms);
   return until_ms <= next_ms ? next_ms : machine_.rti_at_or_after_ms(until_ms);
 }
@@ -183,33 +188,51 @@ double CoordSystem::next_calculation_ms(double time_ms) const {
 // --- time ---------------------------------------------------------------------------------------------------------------
 
 double CoordSystem::next_event_ms() const {
-  const double due = due_.empty() || sync_.empty() ? kNever : due_.front().time_ms;
-  return std::min(resume_ms_, due);
+  const double due = due_.empty() || sync_.empty() ? kNever : time_base_.time_at(due_.front().time_ms);
+  const double settled = time_base_.settled_from_ms() > machine_.now_ms ? time_base_.settled_from_ms() : kNever;
+  return std::min({phase_ == Phase::kRapid ? motors_end_ms() : resume_ms_, due, settled});
+}
+
+/// When the last of its motors comes to rest.
+double CoordSystem::motors_end_ms() const {
+  double end_ms = resume_ms_;
+  for (int motor : motors_) {
+    const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    if (m.coord == number_ && m.source == Motor::Source::kProfile) end_ms = std::max(end_ms, m.profile_end_ms());
+  }
+  return end_ms;
 }
 
 void CoordSystem::service(double time_ms) {
   perform_due(time_ms);
+  record_executed(time_ms);
+  if (phase_ == Phase::kRapid && motors_end_ms() > time_ms) return;
   for (int steps = 0; resume_ms_ <= time_ms; ++steps) {
     if (steps == kMaxStepsAtOneTime) {
       resume_ms_ = machine_.next_rti_ms(time_ms);
       return;
     }
     switch (phase_) {
-      case Phase::kIdle: resume_ms_ = kNever; break;
+      case Phase::kIdle:
+      case Phase::kPaused: resume_ms_ = kNever; break;
       case Phase::kCalculating: calculate(time_ms); break;
       case Phase::kToRest: at_rest(time_ms); break;
       case Phase::kDwelling:
         record({"dwell", item_source_, number_, -1, item_start_ms_, time_ms, 0});
-        calculate(time_ms);
+        go_on(time_ms);
         break;
-      case Phase::kRapid: {
+      case Phase::kRapid:
+        if (motors_end_ms() > time_ms) return;
         for (int motor : motors_) machine_.motors[static_cast<std::size_t>(motor)].settle(time_ms);
-        calculate(time_ms);
+        record({"rapid", item_source_, number_, -1, item_start_ms_, time_ms, rapid_length_uu_});
+        go_on(time_ms);
         break;
-      }
     }
   }
 }
+
+/// An item is complete.
+void CoordSystem::go_on(double time_ms) { pause_requested_ ? pause_here(time_ms) : calculate(time_ms); }
 
 void CoordSystem::calculate(double time_ms) {
   phase_ = Phase::kCalculating;
@@ -254,7 +277,7 @@ std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
   }
   phase_ = Phase::kToRest;
   after_rest_ = then;
-  resume_ms_ = on_path_ ? std::max(time_ms, pipeline_.end_ms()) : time_ms;
+  resume_ms_ = on_path_ ? std::max(time_ms, time_base_.time_at(pipeline_.end_ms())) : time_ms;
   return std::nullopt;
 }
 
@@ -265,8 +288,9 @@ void CoordSystem::at_rest(double time_ms) {
       machine_.motors[static_cast<std::size_t>(home_motor_)].home_here(time_ms);
       if (const std::string refusal = match_positions(time_ms); !refusal.empty())
         return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
-      calculate(time_ms);
+      go_on(time_ms);
       break;
+    case AfterRest::kPause: pause_here(time_ms); break;
     case AfterRest::kDwell: start_dwell(time_ms); break;
     case AfterRest::kRapid: start_rapid(time_ms); break;
     case AfterRest::kNextInterrupt:
@@ -281,21 +305,19 @@ void CoordSystem::settle_path(double time_ms) {
   if (!on_path_) return;
   if (pipeline_.end_ms() > sequence_start_ms_) moves_without_time_ = 0;
   collect_timings();
+  record_executed(time_ms);
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
   pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
   if (!map_.has_inverse_motors()) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
   for (std::size_t i = 0; i < position.size(); ++i)
-    machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].rest(pipeline_.end_ms(), position[i]);
+    machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].rest(time_base_.time_at(pipeline_.end_ms()), position[i]);
   on_path_ = false;
 }
 
 void CoordSystem::finish_program() {
-  phase_ = Phase::kIdle;
-  resume_ms_ = kNever;
-  sync_.clear();
-  due_.clear();
-  runner_.thread.stop();
+  drop_program();
+  pointed_label_ = -1;
 }
 
 void CoordSystem::start_dwell(double time_ms) {
@@ -312,7 +334,7 @@ void CoordSystem::start_rapid(double time_ms) {
   perform_up_to(next_id_++);
   const ElementStore& e = machine_.elements;
   const bool equal_times = e.get(ElementId::kCoordRapidVelCtrl, static_cast<unsigned>(number_)) != 0;
-  double longest_ms = 0, longest_cruise_ms = 0;
+  double longest_cruise_ms = 0;
   std::vector<motion::JogParameters> parameters;
   for (std::size_t i = 0; i < map.motors.size(); ++i) {
     const auto n = static_cast<unsigned>(map.motors[i]);
@@ -324,33 +346,51 @@ void CoordSystem::start_rapid(double time_ms) {
                             fmt::format("Motor[{}].{} is not above 0; a rapid move needs a speed", n, at_max ? "MaxSpeed" : "JogSpeed")});
     longest_cruise_ms = std::max(longest_cruise_ms, std::abs(target[i] - machine_.motors[n].position_at(time_ms)) / parameters[i].speed_mu_ms);
   }
+  const TimeBase* clock = clock_for_motion(time_ms);
   for (std::size_t i = 0; i < map.motors.size(); ++i) {
     Motor& m = machine_.motors[static_cast<std::size_t>(map.motors[i])];
     const double from = m.position_at(time_ms);
     if (from == target[i]) continue;
     if (equal_times) parameters[i].speed_mu_ms = std::abs(target[i] - from) / longest_cruise_ms;  // the same D/V for all
-    m.follow(motion::MotorProfile::move(time_ms, from, 0, target[i], parameters[i]));
-    longest_ms = std::max(longest_ms, m.profile.end_ms() - time_ms);
+    m.follow(motion::MotorProfile::move(clock->path_at(time_ms), from, 0, target[i], parameters[i]), clock);
   }
   double length2 = 0;
   for (std::size_t axis = 0; axis < rapid_target_uu_.size(); ++axis)
     length2 += (rapid_target_uu_[axis] - calculated_uu_[axis]) * (rapid_target_uu_[axis] - calculated_uu_[axis]);
   calculated_uu_ = rapid_target_uu_;
   item_start_ms_ = time_ms;
-  record({"rapid", item_source_, number_, -1, time_ms, time_ms + longest_ms, std::sqrt(length2)});
+  rapid_length_uu_ = std::sqrt(length2);
   phase_ = Phase::kRapid;
-  resume_ms_ = time_ms + longest_ms;
+  resume_ms_ = time_ms;
 }
 
 void CoordSystem::sample(double start_ms, double period_ms, int count, std::span<double> position_mu) {
-  pipeline_.sample(start_ms, period_ms, count, position_mu, {});
-  sampled_to_ms_ = start_ms + (count - 1) * period_ms;
+  if (time_base_.is_real_time()) pipeline_.sample(start_ms, period_ms, count, position_mu, {});
+  else sample_by_clock(start_ms, period_ms, count, position_mu);
+  sampled_to_ms_ = time_base_.path_at(start_ms + (count - 1) * period_ms);
   for (std::size_t i = 0; i < path_map_.motors.size(); ++i) {
     Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
     const std::size_t last = (i + 1) * static_cast<std::size_t>(count) - 1;
     const double before_mu = count > 1 ? position_mu[last - 1] : m.position_mu;
     m.velocity_mu_ms = (position_mu[last] - before_mu) / period_ms;  // as the controller's DesVel: over the last servo cycle
     m.position_mu = position_mu[last];
+  }
+}
+
+/// In runs of ticks over which the clock's rate is steady, single ticks while it changes.
+void CoordSystem::sample_by_clock(double start_ms, double period_ms, int count, std::span<double> position_mu) {
+  const std::size_t motors = path_map_.motors.size();
+  for (int done = 0; done < count;) {
+    const double first_ms = start_ms + done * period_ms;
+    const double steady_ms = time_base_.steady_until_ms(first_ms);
+    int n = 1;
+    while (done + n < count && first_ms + n * period_ms <= steady_ms) ++n;
+    sample_run_.resize(motors * static_cast<std::size_t>(n));
+    pipeline_.sample(time_base_.path_at(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
+    for (std::size_t m = 0; m < motors; ++m)
+      std::copy_n(sample_run_.begin() + static_cast<std::ptrdiff_t>(m) * n, n,
+                  position_mu.begin() + static_cast<std::ptrdiff_t>(m) * count + done);
+    done += n;
   }
 }
 
@@ -369,16 +409,37 @@ void CoordSystem::collect_timings() {
   for (const motion::MoveTiming& timing : timings_) {
     while (!pending_moves_.empty() && pending_moves_.front().id <= timing.id) {
       const PendingMove& move = pending_moves_.front();
-      if (move.id == timing.id)
-        record({move.mode, move.source, number_, -1, timing.start_ms, timing.end_ms, timing.length_uu});
+      if (move.id == timing.id) executed_.push_back({timing, move.mode, move.source});
       pending_moves_.pop_front();
     }
   }
   if (sync_.empty()) due_.clear();
 }
 
+void CoordSystem::record_executed(double time_ms) {
+  for (; !executed_.empty(); executed_.pop_front()) {
+    const auto& [timing, mode, source] = executed_.front();
+    const double end_ms = time_base_.time_at(timing.end_ms);
+    if (end_ms > time_ms) return;
+    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu});
+  }
+}
+
+void CoordSystem::report_unfinished(double time_ms, bool go_on) {
+  record_executed(time_ms);
+  const auto report = [&](std::string_view mode, bytecode::SourceLine source, double start_ms, double end_ms, double length) {
+    const bool known = go_on && end_ms < kNever;
+    if (start_ms < time_ms || known) record({mode, source, number_, -1, start_ms, known ? end_ms : time_ms, length});
+  };
+  for (; !executed_.empty(); executed_.pop_front()) {
+    const auto& [timing, mode, source] = executed_.front();
+    report(mode, source, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu);
+  }
+  if (phase_ == Phase::kRapid) report("rapid", item_source_, item_start_ms_, motors_end_ms(), rapid_length_uu_);
+}
+
 void CoordSystem::perform_due(double time_ms) {
-  while (!due_.empty() && due_.front().time_ms <= time_ms) {
+  while (!due_.empty() && time_base_.time_at(due_.front().time_ms) <= time_ms) {
     perform_up_to(due_.front().id);
     if (!due_.empty()) due_.pop_front();
   }

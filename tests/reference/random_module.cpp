@@ -155,7 +155,7 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kRegWord: return Instruction::with_bc(op, reg(), 0, below(static_cast<unsigned>(WordKind::kCount)));
     case OperandFormat::kControl: {
       const ControlVerb verb = any(ControlVerb::kCount);
-      return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(2), static_cast<unsigned>(control_argument_count(verb)));
+      return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(3), static_cast<unsigned>(control_argument_count(verb)));
     }
     case OperandFormat::kString:
     case OperandFormat::kPortString:

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "compiler/bytecode/control.h"
 #include "compiler/frontend/power_pmac/lowering.h"
@@ -71,7 +72,7 @@ std::vector<ir::ExprPtr> Lowering::lower_number_list(P::NumberListContext* list)
   }
   for (P::NumberItemContext* item : list->numberItem()) {
     if (item->expression()) numbers.push_back(lower_expression(item->expression()));
-    else if (item->STAR()) not_supported(span_of(item), "the list * of all motors or coordinate systems");
+    else if (item->STAR()) numbers.push_back(ir::make_number(std::numeric_limits<double>::infinity(), span_of(item)));
     else if (item->NUMBER().size() == 1) numbers.push_back(lower_number(token_of(item->NUMBER(0))));
     else if (item->NUMBER().size() == 2) append_range(token_of(item->NUMBER(0)), token_of(item->NUMBER(1)), span_of(item), numbers);
   }
@@ -83,6 +84,7 @@ std::vector<ir::ExprPtr> Lowering::lower_plc_list(P::PlcListContext* list) {
   for (P::PlcItemContext* item : list->plcItem()) {
     const source::Span span = span_of(item);
     if (item->NAME()) numbers.push_back(std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}}));
+    else if (item->STAR()) numbers.push_back(ir::make_number(std::numeric_limits<double>::infinity(), span));
     else if (item->expression()) numbers.push_back(lower_expression(item->expression()));
     else if (item->NUMBER().size() == 1) numbers.push_back(lower_number(token_of(item->NUMBER(0))));
     else if (item->NUMBER().size() == 2) append_range(token_of(item->NUMBER(0)), token_of(item->NUMBER(1)), span, numbers);
@@ -100,11 +102,11 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
   const source::Span span = span_of(control);
   if (control->JOG()) return lower_jog(control->jogAction(), span, out);
   if (control->BEGIN() || control->START()) return lower_start(control, out);
-  if (control->CMD()) return out.push_back(ir::make_stmt(span, ir::Command{string_value(*control->STRING()->getSymbol())}));
+  if (control->CMD()) return out.push_back(ir::make_stmt(span, ir::Command{string_value(*control->STRING()->getSymbol()), {}}));
   if (control->SEND()) {
     if (!control->expression().empty()) return not_supported(span, "send with values");
     const auto port = control->NUMBER() ? whole_number(token_of(control->NUMBER()), 7).value_or(0) : 0;
-    return out.push_back(ir::make_stmt(span, ir::Send{static_cast<int>(port), string_value(*control->STRING()->getSymbol())}));
+    return out.push_back(ir::make_stmt(span, ir::Send{static_cast<int>(port), string_value(*control->STRING()->getSymbol()), {}}));
   }
   if (control->SENDALLCMDS()) return not_supported(span, "sendallcmds");
   ControlVerb verb = ControlVerb::kPmatch;
@@ -112,8 +114,7 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
     const std::string direction = text_of(control->direction);
     verb = direction == "<" ? ControlVerb::kRetrace : direction == ">" ? ControlVerb::kForward : ControlVerb::kQuickStop;
   } else if (control->JOGRET()) {
-    if (control->data()) return not_supported(span, "jogret with a position");
-    verb = ControlVerb::kJogReturn;
+    verb = control->data() ? ControlVerb::kJogToAndKeep : ControlVerb::kJogReturn;
   } else if (control->kind) {
     verb = verb_of(control->kind->getType(), control->PLC() != nullptr);
   }
@@ -124,6 +125,7 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
   for (ir::ExprPtr& number : numbers) {
     std::vector<ir::ExprPtr> arguments;
     arguments.push_back(std::move(number));
+    if (control->data()) arguments.push_back(lower_data(control->data()));
     add_control(verb, span, std::move(arguments), out);
   }
 }
@@ -152,21 +154,35 @@ void Lowering::lower_start(P::ProgramControlContext* control, ir::Body& out) {
 
 void Lowering::lower_jog(P::JogActionContext* jog, source::Span span, ir::Body& out) {
   if (!jog) return;
-  if (jog->trigger) return not_supported(span_of(jog->trigger), "a jog until trigger");
-  const std::string operation = text_of(jog->operation);
-  P::JogDistanceContext* distance = jog->jogDistance();
-  ControlVerb verb = ControlVerb::kJogStop;
-  if (operation == "+") verb = ControlVerb::kJogPlus;
-  else if (operation == "-") verb = ControlVerb::kJogMinus;
-  else if (operation == "=") verb = ControlVerb::kJogTo;
-  else if (operation == "==") verb = ControlVerb::kJogToAndKeep;
-  else if (operation == ":") verb = ControlVerb::kJogBy;
-  else if (operation == "^") verb = ControlVerb::kJogByActual;
-  for (ir::ExprPtr& motor : lower_number_list(jog->numberList())) {
+  add_jogs({text_of(jog->operation), jog->jogDistance(), jog->trigger, span}, lower_number_list(jog->numberList()), out);
+}
+
+/// The verb of a jog; nullopt, and an error: there is none with these parts.
+std::optional<ControlVerb> Lowering::jog_verb(const Jog& jog) {
+  struct Row { std::string_view operation; ControlVerb plain, until_trigger; };
+  constexpr auto kNone = ControlVerb::kCount;
+  constexpr Row kRows[] = {{"+", ControlVerb::kJogPlus, kNone}, {"-", ControlVerb::kJogMinus, kNone}, {"/", ControlVerb::kJogStop, kNone},
+                           {"=", ControlVerb::kJogTo, ControlVerb::kJogToTrigger}, {"==", ControlVerb::kJogToAndKeep, kNone},
+                           {":", ControlVerb::kJogBy, ControlVerb::kJogByTrigger}, {"^", ControlVerb::kJogByActual, ControlVerb::kJogByActualTrigger}};
+  for (const Row& row : kRows) {
+    if (row.operation != jog.operation) continue;
+    if (!jog.trigger) return row.plain;
+    if (row.until_trigger != kNone) return row.until_trigger;
+  }
+  diagnostics_.error("PM3013", jog.span, "a jog until trigger is j={position}^{distance}, j:{distance}^{distance} or j^{distance}^{distance}");
+  return std::nullopt;
+}
+
+/// One jog for each motor of a list, on line and in programs.
+void Lowering::add_jogs(const Jog& jog, std::vector<ir::ExprPtr> motors, ir::Body& out) {
+  const std::optional<ControlVerb> verb = jog_verb(jog);
+  if (!verb) return;
+  for (ir::ExprPtr& motor : motors) {
     std::vector<ir::ExprPtr> arguments;
     arguments.push_back(std::move(motor));
-    if (distance) arguments.push_back(distance->data() ? lower_data(distance->data()) : nullptr);
-    add_control(verb, span, std::move(arguments), out);
+    if (jog.distance) arguments.push_back(jog.distance->data() ? lower_data(jog.distance->data()) : nullptr);
+    if (jog.trigger) arguments.push_back(lower_data(jog.trigger));
+    add_control(*verb, jog.span, std::move(arguments), out);
   }
 }
 

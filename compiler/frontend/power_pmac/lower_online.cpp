@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "compiler/bytecode/control.h"
 #include "compiler/frontend/power_pmac/lowering.h"
@@ -11,6 +12,8 @@ namespace {
 
 using bytecode::ProgramKind;
 using ir::ControlVerb;
+
+constexpr std::int64_t kAll = -1;  // #* and &*
 
 }  // namespace
 
@@ -150,10 +153,7 @@ void Lowering::lower_address(P::OnlineContext* online, ir::Body& out) {
   if (!online->numberList()) return not_supported(span, "asking for the addressed motor or coordinate system");
   const auto items = online->numberList()->numberItem();
   const bool all = items.size() == 1 && items[0]->STAR();
-  if (all) {
-    for (std::int64_t n = 1; n < (coord ? bytecode::kMaxCoords : bytecode::kMaxMotors); ++n) list.push_back(n);
-    return;
-  }
+  if (all) return list.push_back(kAll);
   std::vector<std::int64_t> numbers;
   for (ir::ExprPtr& number : lower_number_list(online->numberList())) {
     const auto value = number ? ir::constant_value(*number) : std::nullopt;
@@ -175,7 +175,7 @@ void Lowering::lower_address(P::OnlineContext* online, ir::Body& out) {
 /// The motors or systems that a command of this line is for: one null expression for the addressed one.
 std::vector<ir::ExprPtr> Lowering::addressed(std::vector<std::int64_t>& list, source::Span span) {
   std::vector<ir::ExprPtr> numbers;
-  for (const std::int64_t n : list) numbers.push_back(ir::make_number(static_cast<double>(n), span));
+  for (const std::int64_t n : list) numbers.push_back(ir::make_number(n == kAll ? std::numeric_limits<double>::infinity() : static_cast<double>(n), span));
   if (numbers.empty()) numbers.push_back(nullptr);
   return numbers;
 }
@@ -281,27 +281,20 @@ void Lowering::lower_command(std::string_view word, source::Span span, ir::Body&
 }
 
 void Lowering::lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out) {
-  if (jog->trigger) return not_supported(span_of(jog->trigger), "a jog until trigger");
   const std::string operation = text_of(jog->operation);
   P::JogDistanceContext* distance = jog->jogDistance();
-  ControlVerb verb = ControlVerb::kJogStop;
-  if (operation == "+") verb = ControlVerb::kJogPlus;
-  else if (operation == "-") verb = ControlVerb::kJogMinus;
-  else if (operation == "==") verb = ControlVerb::kJogToAndKeep;
-  else if (operation == ":") verb = ControlVerb::kJogBy;
-  else if (operation == "^") verb = ControlVerb::kJogByActual;
-  else if (operation == "=") verb = distance ? ControlVerb::kJogTo : ControlVerb::kJogReturn;
-  const bool needs_distance = verb == ControlVerb::kJogToAndKeep || verb == ControlVerb::kJogBy || verb == ControlVerb::kJogByActual;
-  if (needs_distance && !distance) {
-    diagnostics_.error("PM3013", span, fmt::format("j{} needs a position or distance in motor units", operation));
+  const bool is_return = operation == "=" && !distance;
+  if (is_return) {
+    for (ir::ExprPtr& motor : addressed_motors(span)) {
+      std::vector<ir::ExprPtr> arguments;
+      arguments.push_back(std::move(motor));
+      add_control(ControlVerb::kJogReturn, span, std::move(arguments), out);
+    }
     return;
   }
-  for (ir::ExprPtr& motor : addressed_motors(span)) {
-    std::vector<ir::ExprPtr> arguments;
-    arguments.push_back(std::move(motor));
-    if (distance) arguments.push_back(distance->data() ? lower_data(distance->data()) : nullptr);
-    add_control(verb, span, std::move(arguments), out);
-  }
+  const bool needs_distance = operation == "==" || operation == ":" || operation == "^";
+  if (needs_distance && !distance) return void(diagnostics_.error("PM3013", span, fmt::format("j{} needs a position or distance in motor units", operation)));
+  add_jogs({operation, distance, jog->trigger, span}, addressed_motors(span), out);
 }
 
 }  // namespace pmac::compiler::power_pmac

@@ -61,7 +61,11 @@ class Lowering {
 
   // programs, motors, coordinate systems (lower_control.cpp)
   void lower_program_control(P::ProgramControlContext* control, ir::Body& out);
+  /// Parts of a jog command; distance and trigger may be missing.
+  struct Jog { std::string operation; P::JogDistanceContext* distance; P::DataContext* trigger; source::Span span; };
   void lower_jog(P::JogActionContext* jog, source::Span span, ir::Body& out);
+  std::optional<ir::ControlVerb> jog_verb(const Jog& jog);
+  void add_jogs(const Jog& jog, std::vector<ir::ExprPtr> motors, ir::Body& out);
   void lower_start(P::ProgramControlContext* control, ir::Body& out);
   void lower_pset(P::SimpleStatementContext* statement, ir::Body& out);
   std::vector<ir::ExprPtr> lower_number_list(P::NumberListContext* list);

@@ -166,7 +166,7 @@ class TokenPass {
   bool wants_operand(std::size_t type) const {
     if (before_ == T::JOG || before_ == T::ON_J) return is_assignment(type) || type == T::LEFT;
     if (before_ == T::LH) return false;
-    if (type == T::STAR) return !operand_wanted_ && before_ != T::ARROW && before_ != T::COLON && before_ != T::HASH && before_ != T::AMPERSAND && before_ != T::COORD;
+    if (type == T::STAR) return before_ == T::NUMBER || before_ == T::NAME || before_ == T::MEMBER || before_ == T::RIGHT || before_ == T::RIGHT_BRACKET;
     return is_operand_wanted(type);
   }
 

@@ -47,6 +47,13 @@ TEST_CASE("elements: found by name in any case, every one of them", "[bytecode]"
   }
 }
 
+TEST_CASE("elements: a board that is another name for a structure", "[bytecode]") {
+  CHECK(find_element("PowerBrick[].Chan[].OutCtrl") == ElementId::kGate3ChanOutCtrl);
+  CHECK(find_element("acc24e2a[].pwmperiod") == find_element("Gate1[].PwmPeriod"));
+  CHECK(find_element("Acc68E[].DataReg[]") == ElementId::kGateIoDataReg);
+  CHECK(find_element("Acc99[].DataReg[]") == kNoElement);
+}
+
 TEST_CASE("elements: as many index ranges as brackets in the name", "[bytecode]") {
   for (int id = 0; id < static_cast<int>(ElementId::kCount); ++id) {
     const ElementInfo& info = element_info(static_cast<ElementId>(id));

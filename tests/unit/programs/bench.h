@@ -44,6 +44,7 @@ class ProgramBench : public runtime::SampleSink {
     options.observers.move = [this](const runtime::MoveRecord& m) { moves.push_back(m); };
     options.observers.output = [this](const runtime::OutputChange& c) { outputs.push_back(c); };
     options.observers.fault = [this](const runtime::FaultRecord& f) { faults.push_back(f); };
+    options.observers.answer = [this](const std::string& answer) { answers.push_back(answer); };
     options.observers.refused = [this](const std::string& what, const std::string& why) { refusals.push_back(what + ": " + why); };
     machine = std::make_unique<runtime::Machine>(options);
     machine->add_sink(this);
@@ -73,7 +74,7 @@ class ProgramBench : public runtime::SampleSink {
     return rows_[0];
   }
 
-  std::vector<std::string> diagnostics, refusals;
+  std::vector<std::string> diagnostics, refusals, answers;
   std::vector<runtime::MoveRecord> moves;
   std::vector<runtime::OutputChange> outputs;
   std::vector<runtime::FaultRecord> faults;
