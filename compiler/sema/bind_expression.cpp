@@ -262,7 +262,6 @@ void Binder::note_stored_element(const ir::Element& element, const source::Span&
 
 /// Once for each element, where the program reads a status that stays at its default here.
 void Binder::note_uncomputed_element(const ir::Element& element, const source::Span& span) {
-  if (!settings_.extra_warnings) return;
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
   if (info.simulation != bytecode::ElementSimulation::kUnknown || !project_.reported_elements.insert(std::string(info.name)).second) return;
   diagnostics_.warning("PM6012", span, fmt::format("the simulation does not compute {}; it reads {}", info.name, info.default_value));

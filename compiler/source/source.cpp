@@ -85,7 +85,7 @@ std::vector<Diagnostic> Diagnostics::take() {
   return taken;
 }
 
-bool is_repetitive(std::string_view code) { return code.starts_with("PM202"); }
+bool is_repetitive(std::string_view code) { return code.starts_with("PM202") || code == "PM2011" || code == "PM7001"; }
 
 namespace {
 

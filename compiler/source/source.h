@@ -127,7 +127,7 @@ class Diagnostics {
   DiagnosticFilter* filter_ = nullptr;
 };
 
-/// Long lists of these messages are shortened for people, and do not use up the error limit: the spellings of Turbo PMAC.
+/// Messages that files in the language of Turbo PMAC have by the hundred: they do not use up the error limit.
 bool is_repetitive(std::string_view code);
 
 /// The candidate nearest to a misspelt word, case ignored, or empty if none is near.

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "compiler/source/format.h"
 #include "compiler/source/message.h"
@@ -30,14 +31,19 @@ std::size_t count(const Found& found, source::Severity severity) {
   return static_cast<std::size_t>(std::count_if(found.begin(), found.end(), [&](const auto& d) { return d.severity == severity; }));
 }
 
+bool is_turbo(const source::Diagnostic& diagnostic) { return diagnostic.span.valid() && diagnostic.code.starts_with("PM202"); }
+
 /// Messages of one kind in one file that are counted and no longer shown.
 class Repetitions {
  public:
-  Repetitions(const source::SourceManager& sources, std::size_t limit) : sources_(sources), limit_(limit) {}
+  Repetitions(const source::SourceManager& sources, const Found& found, std::size_t limit) : sources_(sources), limit_(limit) {
+    for (const source::Diagnostic& diagnostic : found)
+      if (is_turbo(diagnostic)) turbo_files_.insert(diagnostic.span.file);
+  }
 
   /// True: show this one too.
   bool show(const source::Diagnostic& diagnostic) {
-    if (limit_ == 0 || !source::is_repetitive(diagnostic.code) || !diagnostic.span.valid()) return true;
+    if (limit_ == 0 || !source::is_repetitive(diagnostic.code) || !turbo_files_.contains(diagnostic.span.file)) return true;
     Kind& kind = kinds_[{diagnostic.span.file, diagnostic.code}];
     if (kind.shown < limit_) return ++kind.shown, true;
     const int line = sources_.line_column(diagnostic.span.file, diagnostic.span.begin).line;
@@ -68,12 +74,13 @@ class Repetitions {
 
   const source::SourceManager& sources_;
   std::size_t limit_;
+  std::set<std::int32_t> turbo_files_;
   std::map<std::pair<std::int32_t, std::string>, Kind> kinds_;
 };
 
 /// What a person can do next about files in the language of the older controller.
 std::string advice(const Found& found, const Arguments& arguments) {
-  const bool turbo = std::any_of(found.begin(), found.end(), [](const auto& d) { return source::is_repetitive(d.code); });
+  const bool turbo = std::any_of(found.begin(), found.end(), is_turbo);
   if (!turbo) return {};
   std::string text = "note: this is written in the language of Turbo PMAC";
   if (!arguments.fix) text += "; pmacc --fix rewrites the spellings that have one translation";
@@ -82,7 +89,7 @@ std::string advice(const Found& found, const Arguments& arguments) {
 
 void print_text(compiler::Session& session, const Found& found, std::size_t dropped, const Arguments& arguments) {
   const bool color = use_color(arguments);
-  Repetitions repetitions(session.sources(), arguments.repeat_limit);
+  Repetitions repetitions(session.sources(), found, arguments.repeat_limit);
   for (const source::Diagnostic& diagnostic : found)
     if (repetitions.show(diagnostic)) std::cerr << source::format_text(session.sources(), diagnostic, color);
   std::cerr << repetitions.summary() << advice(found, arguments);
