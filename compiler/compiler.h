@@ -8,6 +8,7 @@
 //     print(session.diagnostics());
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ struct InputFile {
   std::string name;   // as messages show it; the folder of a relative #include
   std::string text;
 };
+
+/// First numbers that global, csglobal and ptr names get.
+struct VariableStarts { std::int64_t p = 8192, q = 1024, m = 8192; };
 
 struct Options {
   std::vector<std::string> include_dirs;
@@ -45,12 +49,16 @@ class Session {
   /// for example "-e" or "stdin". coord, motor: what & and # address when the text begins.
   std::optional<bytecode::Module> compile_online(std::string_view text, std::string_view name);
 
+  /// For names that are declared from now on.
+  void set_variable_starts(const VariableStarts& starts);
+
   /// Makes the names of a loaded object file known.
   void adopt(const bytecode::Module& module);
 
   /// Diagnostics of all calls so far; cleared by take.
   source::Diagnostics& diagnostics();
   const source::SourceManager& sources() const;
+  source::SourceManager& sources();
 
   struct State;
   State& state() { return *state_; }  // for the emit functions below

@@ -87,5 +87,8 @@ void Session::adopt(const bytecode::Module& module) {
 
 source::Diagnostics& Session::diagnostics() { return state_->diagnostics; }
 const source::SourceManager& Session::sources() const { return state_->sources; }
+source::SourceManager& Session::sources() { return state_->sources; }
+
+void Session::set_variable_starts(const VariableStarts& starts) { state_->project.names.set_starts(starts.p, starts.q, starts.m); }
 
 }  // namespace pmac::compiler

@@ -3,7 +3,7 @@
 // The rules describe text after the preprocessor. Words are recognised by the class WordLexer (compiler/frontend/power_pmac), which
 // cuts glued words such as ta500ts0 or X1.5Y4 and knows the declared names: the lexer below only finds where a word begins.
 // A line end is white space. Where lines matter, the pass of token_pass.cpp has told the parser by the tokens: JOIN stands between
-// words of one motion line, axis words have types of their own (C90 is AXIS, C6 = 1 begins with LETTER_C), and an operator that
+// words of one line, LINE_END behind a line that cexec or cskip may leave out, words behind a code letter or call are LINE_WORD, axis words have types of their own (C90 is AXIS, C6 = 1 begins with LETTER_C), and an operator that
 // begins a line is no binary one. So every decision but a few of on-line commands is made by one or two tokens.
 grammar PowerPmac;
 
@@ -14,7 +14,7 @@ bool sameLine() { return _input->LT(1)->getLine() == _input->LT(-1)->getLine(); 
 
 tokens {
   // what a WORD can turn out to be
-  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, VAR, JOIN, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
+  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
   // keywords of both tables
   OPEN, CLOSE, PROG, PLC, SUBPROG, FORWARD, INVERSE, ROTARY, GLOBAL, CSGLOBAL, PTR, LOCAL, SUB,
   ABORT, ADISABLE, BEGIN, CMD, DDISABLE, DISABLE, DKILL, ENABLE, HOLD, HOME, HOMEZ, JOG, JOGRET, KILL, LH, PAUSE, PMATCH, RESUME,
@@ -84,11 +84,15 @@ simpleStatement
   | CONTINUE
   | RETURN
   | STOP
-  | kind=(GOTO | GOSUB | CALLSUB) labelNumber arguments?
-  | CALL callTarget arguments?
+  | kind=(GOTO | GOSUB | CALLSUB) labelNumber arguments? (JOIN lineWord)*
+  | CALL callTarget arguments? (JOIN lineWord)*
   | READ '(' readLetter (',' readLetter)* ')'
   | kind=(DWELL | DELAY) data
-  | kind=(CSET | CCLR | CEXEC | CSKIP | CCALL | CDEF | CUNDEF) data?
+  | kind=(CSET | CCLR) data
+  | kind=(CEXEC | CSKIP) data (statement | ';')* LINE_END
+  | kind=CCALL data? (JOIN lineWord)*
+  | CDEF data (JOIN lineWord)*
+  | CUNDEF NUMBER?
   | kind=(BSTART | BSTOP)
   | PSET (PSET_AXIS data)+
   | kind=(PCLR | PSTORE | PLOAD | PREAD | VREAD | DREAD | FREAD | TREAD) axisList?
@@ -97,8 +101,10 @@ simpleStatement
 
 labelNumber : NUMBER | '(' expression ')' | NAME ;
 callTarget : NUMBER | '(' expression ')' | NAME ('.' MEMBER)? ;
-arguments : '(' (expression (',' expression)*)? ')' ;
-readLetter : AXIS | VECTOR | CODE | VAR | LETTER_C | LETTER_D | LETTER_F | LETTER_I | LETTER_M | LETTER_N | LETTER_R | NAME ;
+arguments : '(' (argument (',' argument)*)? ')' ;
+/// &P100, &Table(0): the address of variables, for functions of vectors, matrices and texts.
+argument : '&' lvalue | expression ;
+readLetter : AXIS | VECTOR | CODE | LETTER | VAR | LETTER_C | LETTER_D | LETTER_F | LETTER_I | LETTER_M | LETTER_N | LETTER_R | NAME ;
 
 // --- motion -------------------------------------------------------------------------------------------------------------------
 
@@ -114,7 +120,8 @@ motionWord
   | kind=NORMAL (NORMAL_VECTOR data)+
   ;
 
-move : moveWord (JOIN moveWord)* ;
+/// Words such as P5 behind axis words are for a canned cycle to read.
+move : moveWord (JOIN moveWord)* (JOIN lineWord)* ;
 moveWord : axisWord | vectorWord | radiusWord ;
 axisWord : AXIS data (':' velocity=data)? ('^' trigger=data)? ;
 vectorWord : VECTOR data ;
@@ -122,7 +129,9 @@ radiusWord : RADIUS data ;
 axisList : '(' axisName (',' axisName)* ')' ;
 axisName : AXIS | LETTER_C | LETTER_R | VECTOR | LETTER_I | NAME ;
 
-codeLine : CODE data ;
+/// G83 X1 Y2 Z-3 R1 Q0.5 M08: code letters call subprograms, which read the words behind them.
+codeLine : CODE data (JOIN lineWord)* ;
+lineWord : LINE_WORD data (':' velocity=data)? ('^' trigger=data)? ;
 
 /// The argument of a word: a signed constant, or an expression in parentheses. A bare variable is accepted to be refused.
 data
@@ -137,6 +146,7 @@ assignment
   : lvalue operation=(ASSIGN | '+=' | '-=' | '*=' | '/=' | '%=' | '&=' | '|=' | '^=' | '>>=' | '<<='
            | SYNC_ASSIGN | '+==' | '-==' | '*==' | '/==' | '&==' | '|==' | '^==') {sameLine()}? expression (',' expression)*
   | lvalue step=('++' | '--' | '++=' | SYNC_DECREMENT)
+  | call=NAME arguments
   ;
 
 lvalue : variable | reference ;
@@ -180,8 +190,8 @@ programControl
   | PMATCH
   | JOG jogAction
   | JOGRET numberList? ('=' data)?
-  | CMD STRING
-  | SEND NUMBER? ','? STRING (',' expression)*
+  | CMD STRING (',' argument)*
+  | SEND NUMBER? ','? STRING (',' argument)*
   | SENDALLCMDS
   ;
 startItem : NUMBER (':' programName)? | ':' programName | NAME ;
@@ -204,7 +214,7 @@ online
   | '#' numberList? ('->' ({sameLine()}? axisDefinition)?)?
   | (COORD | '&') numberList?
   | LETTER_M NUMBER (',' NUMBER)? '->' ({sameLine()}? pointerTarget)?
-  | reference '->' pointerTarget
+  | reference '->' ({sameLine()}? pointerTarget)?
   | assignment
   | onlineListAssignment
   | lvalue

@@ -14,10 +14,11 @@ using bytecode::element_info;
 
 std::size_t at_least_1(int count) { return static_cast<std::size_t>(std::max(count, 1)); }
 
-/// Elements that act and are not views of a variable array.
+/// Elements that act and are not views of a variable array or of the user buffer.
 bool has_slots(ElementId id) {
   const ElementInfo& info = element_info(id);
-  const bool view = id == ElementId::kSysP || id == ElementId::kCoordQ;
+  const bool in_user_buffer = id >= ElementId::kSysCdata && id <= ElementId::kSysDdata;
+  const bool view = id == ElementId::kSysP || id == ElementId::kCoordQ || in_user_buffer;
   const bool value = info.type != bytecode::ElementType::kSymbol && info.type != bytecode::ElementType::kStructure;
   return info.simulation == bytecode::ElementSimulation::kActs && value && !view;
 }

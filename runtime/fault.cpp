@@ -5,7 +5,18 @@ namespace pmac::runtime {
 int error_status(FaultKind kind) {
   switch (kind) {
     case FaultKind::kSyncBuffer: return 1;
+    case FaultKind::kCcMoveType: return 3;
     case FaultKind::kMoveType: return 4;
+    case FaultKind::kCcLeadOut: return 5;
+    case FaultKind::kCcLeadIn: return 6;
+    case FaultKind::kCcBufferSize: return 7;
+    case FaultKind::kPvt: return 8;
+    case FaultKind::kCcFeedRate: return 9;
+    case FaultKind::kCcDirection: return 10;
+    case FaultKind::kCcNoSolution: return 11;
+    case FaultKind::kCcDistance: return 13;
+    case FaultKind::kCcNoIntersection: return 14;
+    case FaultKind::kCcNoMoves: return 15;
     case FaultKind::kSoftLimit: return 32;
     case FaultKind::kCircleRadius: return 64;
     case FaultKind::kInverseKinematics:

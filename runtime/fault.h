@@ -21,6 +21,17 @@ enum class FaultKind {
   kNotReady,                // start refused: no motors, not solvable, program missing, ...
   kSoftLimit,
   kUserStatus,              // Coord[].ErrorStatus written by the program
+  kCcMoveType,              // cutter compensation: a move or command that it does not allow
+  kCcLeadOut,               // lead-out that is no line or shorter than the radius
+  kCcLeadIn,                // lead-in that is no line or shorter than the radius
+  kCcBufferSize,            // no motion in the plane within Coord[].CCSize moves
+  kPvt,                     // pvt move that cannot be
+  kCcFeedRate,              // moves given by time
+  kCcDirection,             // a compensated move would go backwards
+  kCcNoSolution,            // an arc that is smaller than the tool
+  kCcDistance,              // leaving out Coord[].CCDistance moves does not help
+  kCcNoIntersection,        // compensated paths that do not meet
+  kCcNoMoves,               // nothing between lead-in and lead-out
   kNotSimulated,            // a statement that the simulation does not execute
 };
 

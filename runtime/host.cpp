@@ -7,6 +7,7 @@
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
+#include "compiler/bytecode/operators.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -17,6 +18,18 @@ using bytecode::ElementId;
 using bytecode::Opcode;
 using bytecode::PointerKind;
 using bytecode::VariableClass;
+
+/// Sys.Cdata[] and its kin: as an M variable of the same place would write it.
+void write_user_buffer(IoSpace& io, const ElementAddress& a, double value) {
+  if (a.id == ElementId::kSysCdata) {
+    io.user().write(a.index[0], static_cast<std::int8_t>(bytecode::integer_from(value)));
+    return;
+  }
+  bytecode::PointerDefinition place;
+  place.kind = a.id == ElementId::kSysDdata ? PointerKind::kUserDouble : a.id == ElementId::kSysFdata ? PointerKind::kUserFloat : PointerKind::kUserInteger;
+  place.address = a.index[0] * (a.id == ElementId::kSysDdata ? 8 : 4);
+  io.write(place, value);
+}
 
 class MachineHost : public Host {
  public:
@@ -174,6 +187,11 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
       break;
     case ElementId::kSysCdTimer: s_.elements.assign(a, s_.now_ms + value); return Flow::kContinue;
     case ElementId::kSysP: s_.p[a.index[0]] = value; return Flow::kContinue;
+    case ElementId::kSysCdata:
+    case ElementId::kSysIdata:
+    case ElementId::kSysUdata:
+    case ElementId::kSysFdata:
+    case ElementId::kSysDdata: write_user_buffer(s_.io, a, value); return Flow::kContinue;
     case ElementId::kCoordQ: s_.coord(static_cast<int>(a.index[0])).q[a.index[1]] = value; return Flow::kContinue;
     case ElementId::kLdataCoord:
       if (!(value >= 0 && value < bytecode::kMaxCoords)) return fault(thread, FaultKind::kRunTime, fmt::format("Ldata.Coord = {} is out of range", value));

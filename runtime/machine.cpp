@@ -2,6 +2,7 @@
 #include "runtime/machine.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,14 @@ namespace pmac::runtime {
 namespace {
 
 constexpr std::uint64_t kLoadBudget = 1'000'000'000;  // instructions of one load script
+
+/// The number of "error #20: ILLEGAL CMD"; 20 where the reason has none.
+int error_number(const std::string& reason) {
+  const std::size_t at = reason.find("error #");
+  int number = 20;
+  if (at != std::string::npos) std::from_chars(reason.data() + at + 7, reason.data() + reason.size(), number);
+  return number;
+}
 
 /// Makes the module's file numbers those of the machine, which knows every file once.
 void adopt_files(bytecode::Module& module, std::vector<std::string>& files) {
@@ -57,6 +66,7 @@ void Machine::State::warn(bytecode::SourceLine source, const std::string& text) 
 
 void Machine::State::refuse(const std::string& text, const std::string& reason) {
   any_refused = true;
+  last_error = error_number(reason);
   if (options.observers.refused) options.observers.refused(text, reason);
 }
 
@@ -123,21 +133,43 @@ void Machine::State::command(std::string_view text, std::string_view name) {
   load(std::move(std::get<bytecode::Module>(compiled)));
 }
 
-void Machine::State::execute_queued_commands() {
+/// The program that queued a command, while it still is there.
+Runner* Machine::State::sender_of(const QueuedCommand& queued_command) {
+  for (Plc& plc : plcs)
+    if (plc.runner && sender_key(*plc.runner) == queued_command.sender) return plc.runner.get();
+  for (const auto& c : coords)
+    if (sender_key(c->runner()) == queued_command.sender) return &c->runner();
+  return nullptr;
+}
+
+/// One command with the addresses of its sender; Ldata.CmdStatus of the sender says how it went: 0 when the last one is done, minus
+/// the error number where one was refused.
+void Machine::State::execute_queued(const QueuedCommand& next) {
   Thread& thread = online->thread;
+  Addresses& addresses = command_addresses[next.sender];
+  const Addresses own{thread.coord, thread.motor};
+  thread.coord = addresses.coord;
+  thread.motor = addresses.motor;
+  thread.q = coord(thread.coord).q.data();
+  last_error = 0;
+  command(next.text, "cmd");
+  addresses = {thread.coord, thread.motor};
+  thread.coord = own.coord;
+  thread.motor = own.motor;
+  thread.q = coord(thread.coord).q.data();
+  Runner* sender = sender_of(next);
+  if (!sender) return;
+  int& status = sender->thread.command_status;
+  const bool more = std::any_of(queued.begin(), queued.end(), [&](const QueuedCommand& other) { return other.sender == next.sender; });
+  if (last_error != 0) status = -last_error;
+  else if (!more && status > 0) status = 0;
+}
+
+void Machine::State::execute_queued_commands() {
   while (!queued.empty()) {
     const QueuedCommand next = std::move(queued.front());
     queued.pop_front();
-    Addresses& addresses = command_addresses[next.sender];
-    const Addresses own{thread.coord, thread.motor};
-    thread.coord = addresses.coord;
-    thread.motor = addresses.motor;
-    thread.q = coord(thread.coord).q.data();
-    command(next.text, "cmd");
-    addresses = {thread.coord, thread.motor};
-    thread.coord = own.coord;
-    thread.motor = own.motor;
-    thread.q = coord(thread.coord).q.data();
+    execute_queued(next);
   }
 }
 

@@ -76,6 +76,22 @@ void define_lookahead(const Call& call, CoordSystem& coord) {
   else coord.lookahead_buffer = static_cast<int>(segments);
 }
 
+/// pmatch, pset, pclr, pstore, pload: the program's own wait for rest, others need a coordinate system at rest.
+Flow change_positions(const Call& call, CoordSystem& coord, const PositionChange& change) {
+  if (call.runner.kind == RunnerKind::kMotionProgram && &coord.runner() == &call.runner) return coord.change_positions(call.runner.thread, change);
+  if (coord.program_running()) call.refusal = "error #38: PROGRAM RUNNING: positions of a coordinate system that executes a program";
+  else call.refusal = coord.change_positions(call.s.now_ms, change);
+  return Flow::kContinue;
+}
+
+Flow pset(const Call& call) {
+  const double axis = call.argument(0);
+  if (axis >= 0 && axis < bytecode::kAxisCount)
+    return change_positions(call, call.s.coord(own_coord(call)), {call.verb, static_cast<int>(axis), call.argument(1)});
+  call.refusal = "error #23: OUT OF RANGE NUMBER: pset of no axis";
+  return Flow::kContinue;
+}
+
 /// Enabling closes the loops; disabling aborts the program and opens them, the motors stand where they are.
 void enable_motors(const Call& call, CoordSystem& coord, bool enabled) {
   if (!enabled) coord.abort(call.s.now_ms);
@@ -109,6 +125,7 @@ Flow program_verb(const Call& call, CoordSystem& coord, int number) {
 }
 
 Flow coord_verb(const Call& call) {
+  if (call.verb == ControlVerb::kPset) return pset(call);
   const int number = number_or(call, own_coord(call), bytecode::kMaxCoords, "coordinate system");
   if (number < 0) return Flow::kContinue;
   CoordSystem& coord = call.s.coord(number);
@@ -131,7 +148,15 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kRetrace:
       call.refusal = "error #20: ILLEGAL CMD: retracing the path backwards (<) is not simulated; > and r go on forwards";
       return Flow::kContinue;
-    case ControlVerb::kPmatch: call.refusal = coord.match_positions(call.s.now_ms); return Flow::kContinue;
+    case ControlVerb::kPread:
+    case ControlVerb::kVread:
+    case ControlVerb::kDread:
+    case ControlVerb::kFread:
+    case ControlVerb::kTread: call.refusal = read_axes(call.s, number, call.verb, call.argument(1), call.runner.thread); return Flow::kContinue;
+    case ControlVerb::kPmatch:
+    case ControlVerb::kPclr:
+    case ControlVerb::kPstore:
+    case ControlVerb::kPload: return change_positions(call, coord, {call.verb});
     case ControlVerb::kDefineLookahead: define_lookahead(call, coord); return Flow::kContinue;
     case ControlVerb::kDeleteLookahead: coord.lookahead_buffer = 0; return Flow::kContinue;
     case ControlVerb::kEnable: enable_motors(call, coord, true); return Flow::kContinue;
@@ -268,6 +293,7 @@ Flow plc_verb(const Call& call) {
     case ControlVerb::kEnablePlc:
       if (plc.runner.get() == &call.runner) break;  // enabling itself changes nothing
       plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
+      plc.runner->thread.ends_scans = true;
       plc.runner->thread.begin(buffer->second);
       plc.active = plc.running = true;
       break;
@@ -276,6 +302,28 @@ Flow plc_verb(const Call& call) {
     case ControlVerb::kResumePlc: plc.running = plc.active; break;
     default: return not_simulated(call);
   }
+  return Flow::kContinue;
+}
+
+/// The pass of the program ends here; queued commands are executed at the end of every pass.
+Flow send_all_commands(const Call& call) {
+  Runner& r = call.runner;
+  if (call.s.queued.empty() || r.kind == RunnerKind::kOnline) return Flow::kContinue;
+  return r.kind == RunnerKind::kMotionProgram ? call.s.coord(r.number).wait_for_interrupt(r.thread) : Flow::kSuspend;
+}
+
+/// M5->: the definition as it would be written.
+Flow report_pointer(const Call& call) {
+  const double number = call.argument(0);
+  if (!(number >= 0 && number < bytecode::kMCount)) {
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: M{}", number);
+    return Flow::kContinue;
+  }
+  const int m = static_cast<int>(number);
+  const PointerEntry& pointer = call.s.pointers.at(m);
+  const bool is_element = pointer.definition.kind == bytecode::PointerKind::kElement;
+  const std::string element = is_element ? element_text(pointer.element) : std::string();
+  call.s.answer(fmt::format("M{}->{}", m, definition_text(pointer.definition, element)));
   return Flow::kContinue;
 }
 
@@ -327,7 +375,9 @@ Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::s
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);
-  if (verb >= ControlVerb::kReportPointer) return not_simulated(call);
+  if (verb == ControlVerb::kSendAllCommands) return send_all_commands(call);
+  if (verb == ControlVerb::kReportPointer) return report_pointer(call);
+  if (verb == ControlVerb::kReset || verb == ControlVerb::kSave) return not_simulated(call);
   return coord_verb(call);
 }
 

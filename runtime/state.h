@@ -73,6 +73,7 @@ struct Machine::State {
   std::uint64_t instructions = 0;
   std::uint64_t random_state = 0x9e3779b97f4a7c15ull;
   bool any_fault = false, any_refused = false;
+  int last_error = 0;                                // number of the last refusal, as in error #20; 0: none
   std::optional<bytecode::SourceLine> assignment_source;  // of the synchronous assignment that is being performed
   std::set<std::pair<std::int32_t, std::int32_t>> warned;   // file and line
   double idle_since_ms = 0;
@@ -98,6 +99,8 @@ struct Machine::State {
   /// Runs a program to its end or budget on the command thread.
   void run_load_script(ProgramHandle program);
   void execute_queued_commands();
+  void execute_queued(const QueuedCommand& next);
+  Runner* sender_of(const QueuedCommand& queued_command);
   static int sender_key(const Runner& runner) { return static_cast<int>(runner.kind) * 100 + runner.number; }
   bool executes(bytecode::ProgramKind kind, std::uint32_t number) const;
   void install(ProgramHandle handle);
@@ -120,6 +123,10 @@ struct Machine::State {
 /// Control verbs of programs and command lines (online.cpp). refusal: filled where the controller would answer an error.
 Flow execute_control(Machine::State& state, Runner& runner, bytecode::ControlVerb verb, std::span<const double> arguments,
                      std::string& refusal);
+
+/// pread and its kin (axis_queries.cpp): axis values of a coordinate system to D(axis index), their mask to D32 of the thread.
+/// Answers a refusal or empty. wanted_axes: their mask; nan: all.
+std::string read_axes(Machine::State& state, int coord, bytecode::ControlVerb verb, double wanted_axes, Thread& thread);
 
 /// Value of a status element at the present time, or of a stored one (status.cpp).
 double read_element_value(Machine::State& state, Runner& runner, const ElementAddress& address);

@@ -62,6 +62,7 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
     case ElementId::kCoordLookAheadActive:
       return c.lookahead_buffer > 0 && s.elements.get(ElementId::kCoordLHDistance, a.index[0]) > 1 &&
              s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
+    case ElementId::kCoordCCMode: return c.modal.compensation_side;
     case ElementId::kCoordMoveMode: return static_cast<double>(c.modal.mode);
     case ElementId::kCoordNumMotors: return static_cast<double>(c.motors().size());
     case ElementId::kCoordDesPos: return c.commanded_position(s.now_ms)[a.index[1]];
@@ -82,6 +83,11 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
     case ElementId::kSysServoCount: return static_cast<double>(std::max<std::int64_t>(s.tick, 0));
     case ElementId::kSysCdTimer: return std::max(0.0, s.elements.get(a) - s.now_ms);  // stored as the time at which it is 0
     case ElementId::kSysP: return s.p[a.index[0]];
+    case ElementId::kSysCdata: return s.io.user().read<std::int8_t>(a.index[0]);
+    case ElementId::kSysIdata: return s.io.user().read<std::int32_t>(4 * a.index[0]);
+    case ElementId::kSysUdata: return s.io.user().read<std::uint32_t>(4 * a.index[0]);
+    case ElementId::kSysFdata: return s.io.user().read<float>(4 * a.index[0]);
+    case ElementId::kSysDdata: return s.io.user().read<double>(8 * a.index[0]);
     case ElementId::kLdataCoord: return runner.thread.coord;
     case ElementId::kLdataMotor: return runner.thread.motor;
     case ElementId::kLdataGoBack: return runner.thread.go_back;

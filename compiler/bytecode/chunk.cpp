@@ -49,7 +49,7 @@ std::uint32_t vocabulary_checksum() {
 #define OPCODE(Name, name, format, meaning) text += #Name "/" #format ";";
 #include "compiler/bytecode/opcode.def"
 #undef OPCODE
-#define FUNCTION(Name, name, argument_count, meaning) text += name "/" #argument_count ";";
+#define FUNCTION(Name, name, signature, meaning) text += name "/" signature ";";
 #include "compiler/bytecode/function.def"
 #undef FUNCTION
 #define ELEMENT(Id, name, count0, count1, count2, Type, default_value, unit, Access, Simulation, meaning) \

@@ -1,9 +1,11 @@
 // The readable form of a module: its tables, then its programs, one instruction a line with the source place at the right
 // of the first instruction of a line.
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
+#include "compiler/bytecode/letters.h"
 #include "compiler/bytecode/module_text.h"
 #include "compiler/bytecode/opcode.h"
 
@@ -49,6 +51,7 @@ class OperandText {
   std::string call() const;
   std::string word() const;
   std::string control() const;
+  std::string letters() const;
 
   const Module& module_;
   const Program& program_;
@@ -117,6 +120,17 @@ std::string OperandText::control() const {
   return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
 }
 
+std::string OperandText::letters() const {
+  return entry(module_.constants, [](double mask) {
+    std::string names;
+    for (int letter = 1; letter <= kLetterCount; ++letter) {
+      if (std::fmod(std::floor(std::ldexp(mask, 1 - letter)), 2) != 1) continue;
+      names += (names.empty() ? "" : " ") + letter_name(letter);
+    }
+    return names;
+  });
+}
+
 std::string OperandText::text() const {
   switch (opcode_info(in_.op).format) {
     case OperandFormat::kNone: return {};
@@ -157,6 +171,11 @@ std::string OperandText::text() const {
     case OperandFormat::kRegString: return a_and(string());
     case OperandFormat::kAxisDef: return "axis " + std::to_string(in_.imm);
     case OperandFormat::kPointerDef: return "pointer " + std::to_string(in_.imm);
+    case OperandFormat::kRegWordOf: return std::to_string(in_.c()) + ": " + letter_name(in_.b()) + " " + reg(in_.a);
+    case OperandFormat::kWordJump: return std::to_string(in_.a) + ", " + target();
+    case OperandFormat::kWord: return std::to_string(in_.a);
+    case OperandFormat::kCodeOf: return letter_name(in_.b()) + " " + reg(in_.a) + ", words from " + std::to_string(in_.c());
+    case OperandFormat::kLetters: return letters();
     case OperandFormat::kProgram: return entry(module_.programs, program_title);
   }
   return {};

@@ -6,13 +6,14 @@
 namespace pmac::bytecode {
 
 enum class Function : std::uint16_t {
-#define FUNCTION(Name, name, argument_count, meaning) k##Name,
+#define FUNCTION(Name, name, signature, meaning) k##Name,
 #include "compiler/bytecode/function.def"
 #undef FUNCTION
   kCount
 };
 
-struct FunctionInfo { std::string_view name; int argument_count; std::string_view meaning; };
+/// argument_count: without the values of a format. uses_memory: some argument is an address, so that it is called by MemoryFunction.
+struct FunctionInfo { std::string_view name, signature; int argument_count; bool uses_memory; std::string_view meaning; };
 const FunctionInfo& function_info(Function function);
 
 }  // namespace pmac::bytecode

@@ -27,14 +27,20 @@ constexpr std::array<OpcodeInfo, kOpcodeCount> kOpcodes = {{
 #undef OPCODE
 }};
 
+constexpr FunctionInfo make_function(std::string_view name, std::string_view signature, std::string_view meaning) {
+  const bool has_values = signature.ends_with('.');
+  const bool uses_memory = signature.find_first_not_of("nN") != std::string_view::npos;
+  return {name, signature, static_cast<int>(signature.size()) - (has_values ? 1 : 0), uses_memory, meaning};
+}
+
 constexpr std::array<FunctionInfo, kFunctionCount> kFunctions = {{
-#define FUNCTION(Name, name, argument_count, meaning) {name, argument_count, meaning},
+#define FUNCTION(Name, name, signature, meaning) make_function(name, signature, meaning),
 #include "compiler/bytecode/function.def"
 #undef FUNCTION
 }};
 
 constexpr OpcodeInfo kUnknownOpcode = {"?", OperandFormat::kNone, "no such instruction"};
-constexpr FunctionInfo kUnknownFunction = {"?", 0, "no such function"};
+constexpr FunctionInfo kUnknownFunction = {"?", "", 0, false, "no such function"};
 
 constexpr std::array<std::string_view, kAxisCount> kAxisNames = {
     "A",  "B",  "C",  "U",  "V",  "W",  "X",  "Y",  "Z",  "AA", "BB", "CC", "DD", "EE", "FF", "GG",

@@ -3,9 +3,11 @@
 #include "compiler/bytecode/verify_code.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
+#include "compiler/bytecode/letters.h"
 #include "compiler/bytecode/module_text.h"
 #include "compiler/bytecode/opcode.h"
 
@@ -36,6 +38,9 @@ class InstructionCheck {
   std::string function_operands() const;
   std::string control_operands() const;
   std::string word_operands() const;
+  std::string line_word_operands() const;
+  std::string code_operands() const;
+  std::string letters() const;
 
   /// Registers first .. first + count - 1 are in the frame or its outgoing arguments.
   std::string registers(unsigned first, unsigned count = 1) const {
@@ -43,6 +48,7 @@ class InstructionCheck {
     if (first + count <= limit) return {};
     return "register " + std::to_string(first) + " is outside the frame of " + std::to_string(limit);
   }
+  static std::string line_word(unsigned number) { return number < kMaxLineWords ? std::string() : "too many words in a line"; }
   std::string both(std::string first, std::string second) const { return first.empty() ? second : first; }
   std::string variable(int count) const { return index(static_cast<std::size_t>(count), "variable number"); }
   std::string index(std::size_t size, const char* what) const {
@@ -89,6 +95,7 @@ std::string InstructionCheck::sync_target(const SyncTarget& target) const {
 std::string InstructionCheck::function_operands() const {
   const auto function = static_cast<Function>(in_.b());
   if (function >= Function::kCount) return "no such function";
+  if (function_info(function).uses_memory != (in_.op == Opcode::kMemoryFunction)) return "a function of another kind";
   return both(registers(in_.a), registers(in_.c(), static_cast<unsigned>(function_info(function).argument_count)));
 }
 
@@ -104,6 +111,22 @@ std::string InstructionCheck::word_operands() const {
   if (kind >= WordKind::kCount) return "no such kind of word";
   const unsigned count = kind == WordKind::kCenter ? 6 : kind == WordKind::kRadius ? 1 : kAxisCount;
   return in_.b() < count ? registers(in_.a) : "no such axis or vector";
+}
+
+std::string InstructionCheck::line_word_operands() const {
+  if (in_.b() < 1 || in_.b() > kLetterCount) return "no such letter";
+  return both(line_word(in_.c()), registers(in_.a));
+}
+
+std::string InstructionCheck::code_operands() const {
+  if (!is_code_letter(in_.b())) return "not a code letter";
+  return in_.c() <= kMaxLineWords ? registers(in_.a) : "too many words in a line";
+}
+
+std::string InstructionCheck::letters() const {
+  if (std::string why = index(module_.constants.size(), "constant"); !why.empty()) return why;
+  const double mask = module_.constants[static_cast<std::size_t>(in_.imm)];
+  return mask >= 0 && mask < kLetterMaskEnd && mask == std::floor(mask) ? std::string() : "not a mask of letters";
 }
 
 std::string InstructionCheck::operands() const {
@@ -151,6 +174,11 @@ std::string InstructionCheck::operands() const {
     case OperandFormat::kRegString: return both(registers(in_.a), index(module_.strings.size(), "text"));
     case OperandFormat::kAxisDef: return index(module_.axis_definitions.size(), "axis definition");
     case OperandFormat::kPointerDef: return index(module_.pointer_definitions.size(), "pointer definition");
+    case OperandFormat::kRegWordOf: return line_word_operands();
+    case OperandFormat::kWordJump: return both(line_word(in_.a), forward());
+    case OperandFormat::kWord: return line_word(in_.a);
+    case OperandFormat::kCodeOf: return code_operands();
+    case OperandFormat::kLetters: return letters();
     case OperandFormat::kProgram:
       if (std::string why = index(module_.programs.size(), "program"); !why.empty()) return why;
       return module_.programs[static_cast<std::size_t>(in_.imm)].kind != ProgramKind::kOnline ? std::string()

@@ -99,6 +99,7 @@ bytecode::Program ProgramWriter::write_buffer(const ir::Buffer& buffer) {
   program.name = buffer.name;
   program.source = tables_.line(buffer.span);
   begin(buffer.local_count);
+  may_scan_ = buffer.kind == bytecode::ProgramKind::kPlc || buffer.kind == bytecode::ProgramKind::kSubprog;
   std::size_t next_routine = 0;
   for (std::size_t i = 0; i <= buffer.body.size(); ++i) {
     for (; next_routine < buffer.routines.size() && buffer.routines[next_routine].first == i; ++next_routine) {

@@ -57,6 +57,9 @@ class ProgramWriter {
   std::int32_t element_ref(const ir::Element& element) { return tables_.element(make_element_ref(element)); }
   void binary_into(const ir::Binary& node, Register destination);
   void condition_into(const ir::Expr& expr, Register destination);
+  void call_into(const ir::FunctionCall& call, Register destination);
+  void address_into(const ir::AddressOf& address, Register destination);
+  void format_values(const std::vector<const ir::Expr*>& values);
   void branch(const ir::Expr& condition, bool sense, Target& target);
 
   // write_statement.cpp
@@ -77,6 +80,12 @@ class ProgramWriter {
   void write(const ir::Call& node, const source::Span& span);
   void write(const ir::Return& node, const source::Span& span);
   void write(const ir::Stop& node, const source::Span& span);
+  void write(const ir::CodeLine& node, const source::Span& span);        // these six in write_line.cpp
+  void write(const ir::ReadWords& node, const source::Span& span);
+  void write(const ir::LineCondition& node, const source::Span& span);
+  void write(const ir::SetFlag& node, const source::Span& span);
+  void write(const ir::Cycle& node, const source::Span& span);
+  void write(const ir::StepBlock& node, const source::Span& span);
   void write(const ir::SetMode& node, const source::Span& span);
   void write(const ir::SetParameter& node, const source::Span& span);
   void write(const ir::SetAbsInc& node, const source::Span& span);
@@ -85,6 +94,7 @@ class ProgramWriter {
   void write(const ir::Move& node, const source::Span& span);
   void write(const ir::Dwell& node, const source::Span& span);
   void write(const ir::Delay& node, const source::Span& span);
+  void write(const ir::Evaluate& node, const source::Span& span);
   void write(const ir::Control& node, const source::Span& span);
   void write(const ir::Command& node, const source::Span& span);
   void write(const ir::Send& node, const source::Span& span);
@@ -95,11 +105,16 @@ class ProgramWriter {
   void write(const ir::Globals& node, const source::Span& span);
   void write(const ir::Report& node, const source::Span& span);
   void write(const ir::OpenBuffer& node, const source::Span& span);
+  void write(const ir::ExecuteAtOnce& node, const source::Span& span);
   void assign(const ir::Expr& target, bytecode::AssignOp op, const ir::Expr& right);
   void assign_synchronously(const ir::Assign& node);
   void assign_list(const ir::Assign& node);
   void assign_elements(const ir::Assign& node);
   void pass_arguments(const std::vector<ir::ExprPtr>& arguments);
+  void put_line_words(const ir::CodeLine& line, std::size_t begin, std::size_t end, bool only_computed);
+  void write_code(const ir::CodeLine& line, std::size_t word);
+  void write_line_part(const ir::CodeLine& line, std::size_t begin, std::size_t end);
+  void write_block_word(const ir::CodeLine& line, std::size_t number);
   void take_results(const std::vector<ir::ExprPtr>& arguments, const std::vector<bool>& by_reference);
 
   Tables& tables_;
@@ -110,6 +125,7 @@ class ProgramWriter {
   std::vector<LabelJump> label_jumps_;
   std::vector<Loop> loops_;  // also switches: continues is null there
   std::int64_t local_count_ = 0;
+  bool may_scan_ = false;    // a PLC program or a subprogram that one may call: its while loops end scans
   Register next_ = 0;
   Register highest_ = 0;
   std::int64_t outgoing_count_ = 0;

@@ -1,6 +1,8 @@
 // Expressions and conditions.
+#include <algorithm>
 #include <cmath>
 
+#include "compiler/bytecode/function.h"
 #include "compiler/bytecode/opcode.h"
 #include "compiler/codegen/program_writer.h"
 
@@ -160,11 +162,46 @@ void ProgramWriter::value_into(const ir::Expr& expr, Register destination) {
   } else if (const auto* binary = std::get_if<ir::Binary>(&expr.node)) {
     binary_into(*binary, destination);
   } else if (const auto* call = std::get_if<ir::FunctionCall>(&expr.node)) {
-    const Register first = take(static_cast<unsigned>(call->arguments.size()));
-    for (std::size_t i = 0; i < call->arguments.size(); ++i) value_into(*call->arguments[i], first + static_cast<Register>(i));
-    emit_abc(Opcode::kFunction, destination, static_cast<Register>(call->function), first);
+    call_into(*call, destination);
+  } else if (const auto* address = std::get_if<ir::AddressOf>(&expr.node)) {
+    address_into(*address, destination);
+  } else if (const auto* text = std::get_if<ir::Text>(&expr.node)) {
+    emit_imm(Opcode::kLoadText, destination, tables_.string(text->value));
   }
   next_ = before;
+}
+
+/// Arguments in consecutive registers; the values of a format go the way of FormatValue.
+void ProgramWriter::call_into(const ir::FunctionCall& call, Register destination) {
+  const bytecode::FunctionInfo& info = bytecode::function_info(call.function);
+  const auto count = static_cast<std::size_t>(info.argument_count);
+  const Register first = take(static_cast<unsigned>(count));
+  for (std::size_t i = 0; i < std::min(count, call.arguments.size()); ++i) value_into(*call.arguments[i], first + static_cast<Register>(i));
+  std::vector<const ir::Expr*> values;
+  for (std::size_t i = count; i < call.arguments.size(); ++i) values.push_back(call.arguments[i].get());
+  format_values(values);
+  emit_abc(info.uses_memory ? Opcode::kMemoryFunction : Opcode::kFunction, destination, static_cast<Register>(call.function), first);
+}
+
+/// All values are computed before the first FormatValue: they may contain formats of their own.
+void ProgramWriter::format_values(const std::vector<const ir::Expr*>& values) {
+  std::vector<Register> registers;
+  for (const ir::Expr* expr : values) registers.push_back(value(*expr));
+  for (const Register r : registers) emit_imm(Opcode::kFormatValue, r, 0);
+}
+
+void ProgramWriter::address_into(const ir::AddressOf& address, Register destination) {
+  if (const auto* element = std::get_if<ir::Element>(&address.place->node)) {
+    emit_imm(Opcode::kLoadByteAddress, destination, element_ref(*element));
+    return;
+  }
+  const auto* variable = std::get_if<ir::Variable>(&address.place->node);
+  if (!variable) return;
+  if (variable->variable_class == VariableClass::kR) outgoing(255);
+  const Register number = variable->index ? index_of(*variable) : take();
+  if (!variable->index) load_number(static_cast<double>(variable->number), number);
+  emit_abc(Opcode::kLoadAddress, destination, number, static_cast<Register>(variable->variable_class));
+  if (address.end > 0) emit_imm(Opcode::kLimitAddress, destination, address.end);
 }
 
 /// 1 or 0 of a condition with && || !.

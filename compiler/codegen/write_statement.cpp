@@ -154,9 +154,11 @@ void ProgramWriter::write(const ir::If& node, const source::Span&) {
   place(end);
 }
 
-/// The first test does not count as a jump-back; the test behind the body does, each time it is true.
+/// The first test does not count as a jump-back; the test behind the body does, each time it is true. A PLC program never gets to
+/// the second test: its scan ends behind the body, and the next scan begins with the first test.
 void ProgramWriter::write(const ir::While& node, const source::Span& span) {
   Target top, test, end;
+  const auto first_test = static_cast<std::int64_t>(code_.size());
   branch(*node.condition, false, end);
   top.pc = static_cast<std::int64_t>(code_.size());
   loops_.push_back({&test, &end});
@@ -164,6 +166,7 @@ void ProgramWriter::write(const ir::While& node, const source::Span& span) {
   loops_.pop_back();
   place_source(span);
   place(test);
+  if (may_scan_) emit_imm(Opcode::kScanLoop, 0, first_test);
   branch(*node.condition, true, top);
   place(end);
 }
@@ -309,8 +312,23 @@ void ProgramWriter::write(const ir::Control& node, const source::Span&) {
   emit_abc(Opcode::kControl, static_cast<Register>(node.verb), first, count);
 }
 
-void ProgramWriter::write(const ir::Command& node, const source::Span&) { emit_imm(Opcode::kCommand, 0, tables_.string(node.text)); }
-void ProgramWriter::write(const ir::Send& node, const source::Span&) { emit_imm(Opcode::kSend, static_cast<Register>(node.port), tables_.string(node.text)); }
+void ProgramWriter::write(const ir::Evaluate& node, const source::Span&) { value_into(*node.value, take()); }
+
+static std::vector<const ir::Expr*> pointers(const std::vector<ir::ExprPtr>& values) {
+  std::vector<const ir::Expr*> all;
+  for (const ir::ExprPtr& value : values) all.push_back(value.get());
+  return all;
+}
+
+void ProgramWriter::write(const ir::Command& node, const source::Span&) {
+  format_values(pointers(node.values));
+  emit_imm(Opcode::kCommand, 0, tables_.string(node.text));
+}
+
+void ProgramWriter::write(const ir::Send& node, const source::Span&) {
+  format_values(pointers(node.values));
+  emit_imm(Opcode::kSend, static_cast<Register>(node.port), tables_.string(node.text));
+}
 void ProgramWriter::write(const ir::AddressCoord& node, const source::Span&) { emit_imm(Opcode::kAddressCoord, value(*node.number), 0); }
 void ProgramWriter::write(const ir::AddressMotor& node, const source::Span&) { emit_imm(Opcode::kAddressMotor, value(*node.number), 0); }
 
@@ -331,6 +349,7 @@ void ProgramWriter::write(const ir::DefinePointer& node, const source::Span&) {
 }
 
 void ProgramWriter::write(const ir::Report& node, const source::Span&) { emit_imm(Opcode::kReport, value(*node.value), tables_.string(node.name)); }
+void ProgramWriter::write(const ir::ExecuteAtOnce& node, const source::Span&) { emit_imm(Opcode::kExecuteProgram, 0, static_cast<std::int64_t>(first_program_ + node.buffer)); }
 void ProgramWriter::write(const ir::OpenBuffer& node, const source::Span&) { emit_imm(Opcode::kInstallProgram, 0, static_cast<std::int64_t>(first_program_ + node.buffer)); }
 
 }  // namespace pmac::compiler::codegen

@@ -62,7 +62,8 @@ struct Binary { Operator op; ExprPtr left, right; };
 struct FunctionCall { bytecode::Function function = bytecode::kNoFunction; std::vector<ExprPtr> arguments; };
 
 /// &P100, &Table(0), &Sys.Cdata[40]: where the variables or bytes of a vector, matrix or text begin.
-struct AddressOf { ExprPtr place; };
+/// end, filled by sema: number behind the last variable of the declared array; 0: no such array.
+struct AddressOf { ExprPtr place; std::int64_t end = 0; };
 
 struct Expr {
   Span span;
@@ -102,6 +103,20 @@ struct Call { ExprPtr number; std::string name, routine; Span name_span; std::ve
 struct Return {};
 struct Stop {};
 
+/// A word of a line: a letter by its number (bytecode/letters.h), its value, and of axis words what follows : and ^.
+struct LineWord { int letter = 0; ExprPtr value, velocity, trigger; Span span; };
+/// G83 X1 Y2: words in order. call: the call, or the definition of a cycle, that the words stand behind; null: the words are all.
+struct CodeLine { StmtPtr call; std::vector<LineWord> words; };
+/// read(X,Y): bit n - 1 for letter n.
+struct ReadWords { std::uint64_t letters = 0; };
+/// cexec, cskip: the rest of the line, executed where the flag is set (skip: clear).
+struct LineCondition { ExprPtr flag; bool skip = false; Body rest; };
+struct SetFlag { ExprPtr flag; bool set = true; };
+enum class CycleVerb : std::uint8_t { kDefine, kUndefine, kCall };
+struct Cycle { CycleVerb verb = CycleVerb::kDefine; ExprPtr number; };
+/// bstart, bstop.
+struct StepBlock { bool begin = true; };
+
 struct SetMode { MoveMode mode = MoveMode::kLinear; };
 struct SetParameter { MotionParameter parameter = MotionParameter::kTa; ExprPtr value; };
 /// abs, inc: axes is a mask; centres: R was in the list.
@@ -112,6 +127,9 @@ struct Word { WordKind kind = WordKind::kTarget; int index = 0; ExprPtr value; S
 struct Move { std::vector<Word> words; };
 struct Dwell { ExprPtr time_ms; };
 struct Delay { ExprPtr time_ms; };
+
+/// A function that is called for what it does: strcpy(&P100, "on").
+struct Evaluate { ExprPtr value; };
 
 /// One verb for one thing, or for each of several: see ControlVerb. Missing arguments are nan.
 struct Control { ControlVerb verb{}; std::vector<ExprPtr> arguments; };
@@ -127,13 +145,15 @@ struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; 
 struct GlobalDeclaration { VariableClass variable_class = VariableClass::kP; std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
 struct Globals { std::vector<GlobalDeclaration> names; };
 struct Report { ExprPtr value; std::string name; };
+/// cx: the buffer executes at once in the addressed coordinate system.
+struct ExecuteAtOnce { std::size_t buffer = 0; };
 struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its open ... close stands here
 
 struct Stmt {
   Span span;
-  std::variant<Block, Assign, AssignSeries, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, SetMode, SetParameter,
+  std::variant<Block, Assign, AssignSeries, Evaluate, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, CodeLine, ReadWords, LineCondition, SetFlag, Cycle, StepBlock, SetMode, SetParameter,
                SetAbsInc, SetFrax, SetNormal, Move, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
-               Globals, Report, OpenBuffer>
+               Globals, Report, OpenBuffer, ExecuteAtOnce>
       node;
 };
 

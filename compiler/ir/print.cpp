@@ -6,6 +6,7 @@
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
+#include "compiler/bytecode/letters.h"
 #include "compiler/ir/ir.h"
 
 namespace pmac::compiler::ir {
@@ -121,6 +122,32 @@ class StmtPrinter {
   }
   void operator()(const Return&) { line("return"); }
   void operator()(const Stop&) { line("stop"); }
+  void operator()(const CodeLine& node) {
+    std::string text = "line";
+    for (const LineWord& word : node.words) {
+      text += fmt::format(" {} {}", bytecode::letter_name(word.letter), print(*word.value));
+      if (word.velocity) text += " : " + print(*word.velocity);
+      if (word.trigger) text += " ^ " + print(*word.trigger);
+    }
+    line(text);
+    if (node.call) nested(*node.call);
+  }
+  void operator()(const ReadWords& node) {
+    std::string text = "read";
+    for (int letter = 1; letter <= bytecode::kLetterCount; ++letter)
+      if (node.letters >> (letter - 1) & 1u) text += " " + bytecode::letter_name(letter);
+    line(text);
+  }
+  void operator()(const LineCondition& node) {
+    line(fmt::format("line {} flag {}", node.skip ? "unless" : "if", print(*node.flag)));
+    body(node.rest);
+  }
+  void operator()(const SetFlag& node) { line(fmt::format("flag {} = {}", print(*node.flag), node.set ? 1 : 0)); }
+  void operator()(const Cycle& node) {
+    constexpr std::string_view kNames[] = {"define", "undefine", "call"};
+    line(fmt::format("cycle {}{}", kNames[static_cast<std::size_t>(node.verb)], node.number ? " " + print(*node.number) : ""));
+  }
+  void operator()(const StepBlock& node) { line(node.begin ? "step begin" : "step end"); }
   void operator()(const SetMode& node) { line(fmt::format("mode {}", bytecode::move_mode_name(node.mode))); }
   void operator()(const SetParameter& node) { line(fmt::format("{} {}", bytecode::motion_parameter_name(node.parameter), print(*node.value))); }
   void operator()(const SetAbsInc& node) { line(fmt::format("{}{}{}", node.absolute ? "abs" : "inc", node.axes || !node.centres ? axis_list(node.axes) : "", node.centres ? " centres" : "")); }
@@ -133,6 +160,7 @@ class StmtPrinter {
   }
   void operator()(const Dwell& node) { line(fmt::format("dwell {}", print(*node.time_ms))); }
   void operator()(const Delay& node) { line(fmt::format("delay {}", print(*node.time_ms))); }
+  void operator()(const Evaluate& node) { line(print(*node.value)); }
   void operator()(const Control& node) {
     const auto number = node.arguments.empty() || !node.arguments[0] ? std::nullopt : constant_value(*node.arguments[0]);
     std::string arguments = list(node.arguments);
@@ -171,6 +199,7 @@ class StmtPrinter {
   }
   void operator()(const Report& node) { line(fmt::format("report {} as \"{}\"", print(*node.value), node.name)); }
   void operator()(const OpenBuffer& node) { buffer(unit_.buffers[node.buffer]); }
+  void operator()(const ExecuteAtOnce& node) { line("execute"); buffer(unit_.buffers[node.buffer]); }
 
   std::string take() { return std::move(out_); }
 

@@ -36,21 +36,6 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-bytecode::Function find_function(std::string_view name) {
-  const std::string wanted = lower(name);
-  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::Function::kCount); ++i)
-    if (bytecode::function_info(static_cast<bytecode::Function>(i)).name == wanted) return static_cast<bytecode::Function>(i);
-  return bytecode::kNoFunction;
-}
-
-/// Functions of the controller that this compiler knows by name only.
-bool is_unsupported_function(std::string_view name) {
-  constexpr std::string_view kNames[] = {"sin_cos", "sincos", "sincosd", "sum", "sumprod", "vcopy", "vmadd", "vscale", "mdet", "minv", "mmadd", "mminor", "mmul",
-                                         "msolve", "mtrans", "tinit", "tdet", "tinv", "tprop", "memcpy", "memset", "sprintf", "strcpy", "strcat", "strcmp",
-                                         "strlen", "strncpy", "strncat", "strncmp", "strtod", "strtolower", "strtoupper", "strstr", "sscanf"};
-  return std::find(std::begin(kNames), std::end(kNames), lower(name)) != std::end(kNames);
-}
-
 std::optional<std::int64_t> number_suffix(std::string_view text) {
   std::int64_t value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -121,6 +106,7 @@ void Binder::bind_expr(ir::Expr& expr) {
   }
   if (auto* call = std::get_if<ir::FunctionCall>(&expr.node))
     for (ir::ExprPtr& argument : call->arguments) bind_value(*argument);
+  if (std::holds_alternative<ir::AddressOf>(expr.node)) diagnostics_.error("PM3070", expr.span, "an address stands only among the arguments of functions, send and cmd that work on variables");
 }
 
 void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
@@ -137,11 +123,11 @@ void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
 
 void Binder::bind_name(ir::Expr& expr) {
   auto use = std::move(std::get<ir::NameUse>(expr.node));
+  if (use.has_arguments && is_function(use.name) && !is_declared(use.name)) return bind_function(expr, use);
   for (ir::ExprPtr& argument : use.arguments) bind_value(*argument);
   if (const auto local = locals_.find(use.name); local != locals_.end()) return bind_indexed(expr, use, VariableClass::kL, local->second.number, local->second.size);
   if (bind_declared_name(expr, use)) return;
   if (!use.has_arguments && bind_kinematic_name(expr, use.name)) return;
-  if (use.has_arguments && bind_function(expr, use)) return;
   report_unknown(use.name, expr.span, use.has_arguments ? "function or array" : "name");
   expr.node = std::move(use);
 }
@@ -188,25 +174,6 @@ bool Binder::bind_kinematic_name(ir::Expr& expr, std::string_view name) {
   if (const int axis = bytecode::axis_index_from_name(after("KinVelAxis")); axis >= 0) return make(VariableClass::kC, 32 + axis);
   if (const int axis = bytecode::axis_index_from_name(after("KinEnaAxis")); axis >= 0) return expr.node = ir::Number{std::ldexp(1.0, axis)}, true;
   return false;
-}
-
-bool Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
-  if (is_unsupported_function(use.name)) {
-    diagnostics_.error("PM5001", expr.span, fmt::format("the function {} is not supported yet", lower(use.name)));
-    expr.node = ir::Number{0};
-    return true;
-  }
-  const bytecode::Function function = find_function(use.name);
-  if (function == bytecode::kNoFunction) return false;
-  const auto wanted = static_cast<std::size_t>(bytecode::function_info(function).argument_count);
-  if (use.arguments.size() != wanted) {
-    diagnostics_.error("PM3048", expr.span, fmt::format("{} takes {} argument(s), not {}", lower(use.name), wanted, use.arguments.size()));
-    use.arguments.resize(wanted);
-    for (ir::ExprPtr& argument : use.arguments)
-      if (!argument) argument = ir::make_number(0, expr.span);
-  }
-  expr.node = ir::FunctionCall{function, std::move(use.arguments)};
-  return true;
 }
 
 // --- elements ---------------------------------------------------------------------------------------------------------------

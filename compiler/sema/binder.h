@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/bytecode/format_text.h"
 #include "compiler/sema/sema.h"
 
 namespace pmac::compiler::sema {
@@ -35,12 +36,20 @@ class Binder {
   void bind(ir::Locals& node, const source::Span& span);
   void bind(ir::Jump& node, const source::Span& span);
   void bind(ir::Call& node, const source::Span& span);
+  void bind(ir::CodeLine& node, const source::Span& span);
+  void bind(ir::LineCondition& node, const source::Span& span);
+  void bind(ir::SetFlag& node, const source::Span& span);
+  void bind(ir::Cycle& node, const source::Span& span);
+  void check_flag(const ir::Expr& flag);
   void bind(ir::SetParameter& node, const source::Span& span);
   void bind(ir::SetNormal& node, const source::Span& span);
   void bind(ir::Move& node, const source::Span& span);
   void bind(ir::Dwell& node, const source::Span& span);
   void bind(ir::Delay& node, const source::Span& span);
+  void bind(ir::Evaluate& node, const source::Span& span);
   void bind(ir::Control& node, const source::Span& span);
+  void bind(ir::Command& node, const source::Span& span);
+  void bind(ir::Send& node, const source::Span& span);
   void bind(ir::AddressCoord& node, const source::Span& span);
   void bind(ir::AddressMotor& node, const source::Span& span);
   void bind(ir::DefineAxis& node, const source::Span& span);
@@ -69,7 +78,19 @@ class Binder {
   void bind_name(ir::Expr& expr);
   bool bind_kinematic_name(ir::Expr& expr, std::string_view name);
   bool bind_declared_name(ir::Expr& expr, ir::NameUse& use);
-  bool bind_function(ir::Expr& expr, ir::NameUse& use);
+
+  // functions and texts (bind_function.cpp)
+  bool is_function(std::string_view name) const;
+  bool is_declared(std::string_view name) const;
+  void bind_function(ir::Expr& expr, ir::NameUse& use);
+  void bind_arguments(bytecode::Function function, std::vector<ir::ExprPtr>& arguments, const source::Span& span);
+  void bind_argument(ir::Expr& argument, char letter, std::string_view function, std::size_t number);
+  void bind_address(ir::Expr& argument, bool variables_only);
+  std::int64_t array_end(const ir::Variable& variable) const;
+  void bind_format(const std::string& text, const std::vector<ir::Expr*>& values, const source::Span& span);
+  void bind_format_value(ir::Expr& value, const bytecode::Conversion& conversion);
+  void bind_text_out(const std::string& text, std::vector<ir::ExprPtr>& values, const source::Span& span);
+
   void bind_indexed(ir::Expr& expr, ir::NameUse& use, ir::VariableClass variable_class, std::int64_t first, std::int64_t size);
   void bind_element(ir::Element& element, const source::Span& span);
   void check_element_index(const ir::Expr& index, int count, std::string_view element);

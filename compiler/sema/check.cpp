@@ -210,6 +210,34 @@ void Binder::bind_named_call(ir::Call& node, const source::Span& span) {
   mark_references(node.by_reference, node.arguments, routine->second.parameters, span, node.routine);
 }
 
+void Binder::bind(ir::CodeLine& node, const source::Span&) {
+  if (node.call) bind_statement(*node.call);
+  for (ir::LineWord& word : node.words) {
+    bind_value(*word.value);
+    bind_optional(word.velocity);
+    bind_optional(word.trigger);
+  }
+}
+
+void Binder::bind(ir::LineCondition& node, const source::Span&) {
+  bind_value(*node.flag);
+  check_flag(*node.flag);
+  bind_body(node.rest);
+}
+
+void Binder::bind(ir::SetFlag& node, const source::Span&) {
+  bind_value(*node.flag);
+  check_flag(*node.flag);
+}
+
+void Binder::check_flag(const ir::Expr& flag) {
+  constexpr int kFlags = 32;
+  const auto value = ir::constant_value(flag);
+  if (value && !(*value >= 0 && *value < kFlags && *value == std::floor(*value))) diagnostics_.error("PM3090", flag.span, fmt::format("the flags of a coordinate system are numbered 0 to {}", kFlags - 1));
+}
+
+void Binder::bind(ir::Cycle& node, const source::Span&) { bind_optional(node.number); }
+
 void Binder::bind(ir::SetParameter& node, const source::Span&) { bind_value(*node.value); }
 void Binder::bind(ir::SetNormal& node, const source::Span&) { for (ir::ExprPtr& component : node.vector) bind_value(*component); }
 void Binder::bind(ir::Move& node, const source::Span& span) {
@@ -228,13 +256,14 @@ void Binder::bind(ir::Control& node, const source::Span&) {
     auto* use = std::get_if<ir::NameUse>(&argument->node);
     if (use && is_plc_verb(node.verb)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
     else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
+    else if (use && node.verb == ControlVerb::kReportPointer) bind_program_name(*argument, SymbolKind::kPointer, "pointer");
     else bind_value(*argument);
   }
   check_control_number(node);
 }
 
 void Binder::check_control_number(const ir::Control& node) {
-  if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset) return;
+  if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset || node.verb == ControlVerb::kReportPointer) return;
   const auto value = ir::constant_value(*node.arguments[0]);
   if (!value) return;
   const bool motor = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;

@@ -35,7 +35,14 @@ class MotionCheck {
     else if (const auto* loop = std::get_if<ir::While>(&statement.node)) run_loop(*loop->body);
     else if (const auto* repeat = std::get_if<ir::DoWhile>(&statement.node)) run_loop(*repeat->body);
     else if (const auto* selection = std::get_if<ir::Switch>(&statement.node)) run_switch(*selection);
-    else if (std::holds_alternative<ir::Label>(statement.node) || std::holds_alternative<ir::Call>(statement.node) || std::holds_alternative<ir::Jump>(statement.node)) mode_.reset();
+    else if (const auto* line = std::get_if<ir::LineCondition>(&statement.node)) run_condition(*line);
+    else if (sets_mode(statement)) mode_.reset();
+  }
+
+  void run_condition(const ir::LineCondition& line) {
+    const Mode before = mode_;
+    run(line.rest);
+    if (mode_ != before) mode_.reset();
   }
 
   void run_if(const ir::If& branch) {
@@ -80,8 +87,9 @@ class MotionCheck {
       const bool in_branch = std::any_of(branch->branches.begin(), branch->branches.end(), [](const ir::IfBranch& way) { return sets_mode(*way.body); });
       return in_branch || (branch->otherwise && sets_mode(*branch->otherwise));
     }
+    if (const auto* line = std::get_if<ir::LineCondition>(&statement.node)) return any(line->rest);
     return std::holds_alternative<ir::SetMode>(statement.node) || std::holds_alternative<ir::Call>(statement.node) || std::holds_alternative<ir::Jump>(statement.node) ||
-           std::holds_alternative<ir::Label>(statement.node);
+           std::holds_alternative<ir::Label>(statement.node) || std::holds_alternative<ir::CodeLine>(statement.node) || std::holds_alternative<ir::Cycle>(statement.node);
   }
 
   void check_parameter(const ir::SetParameter& parameter) {
@@ -131,6 +139,7 @@ class ServedAxes {
       for (const ir::IfBranch& way : branch->branches) run(*way.body);
       if (branch->otherwise) run(*branch->otherwise);
     }
+    if (const auto* line = std::get_if<ir::LineCondition>(&statement.node)) run(line->rest);
     const auto* move = std::get_if<ir::Move>(&statement.node);
     if (!move) return;
     for (const ir::Word& word : move->words) {

@@ -34,6 +34,9 @@ class Declarer {
     const auto number = project_.names.declare_variable(pointer.name, SymbolKind::kPointer, pointer.size, pointer.name_span);
     if (!number) diagnostics_.error("PM3020", pointer.name_span, fmt::format("no variable numbers are left for '{}'", pointer.name));
     pointer.definition.first_m = pointer.definition.last_m = static_cast<std::int32_t>(number.value_or(0));
+    if (pointer.size <= 1) return;
+    if (pointer.definition.kind == bytecode::PointerKind::kSelf) pointer.definition.last_m += pointer.size - 1;
+    else diagnostics_.error("PM3012", pointer.name_span, fmt::format("the array '{}' of pointers can only be made self-referenced: ->*", pointer.name));
   }
 
   void declare_buffer(ir::Buffer& buffer) {

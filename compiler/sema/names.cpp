@@ -92,6 +92,12 @@ std::optional<std::int64_t> NameTable::declare_program(const std::string& name, 
   return next++;
 }
 
+void NameTable::set_starts(std::int64_t global, std::int64_t csglobal, std::int64_t pointer) {
+  next_global_ = global;
+  next_csglobal_ = csglobal;
+  next_pointer_ = pointer;
+}
+
 void NameTable::adopt(const bytecode::Symbol& symbol) {
   if (symbol.kind == SymbolKind::kMacro) return;
   add(symbol.name, Name{symbol.kind, symbol.number, symbol.size, {}, {}, {}});

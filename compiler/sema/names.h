@@ -54,6 +54,9 @@ class NameTable {
   /// Takes a name of an object file over.
   void adopt(const bytecode::Symbol& symbol);
 
+  /// First numbers of globals, C.S. globals and pointers that are declared from now on.
+  void set_starts(std::int64_t global, std::int64_t csglobal, std::int64_t pointer);
+
   const std::map<std::string, Name, std::less<>>& all() const { return names_; }
   /// In order of declaration, for the symbol table of a module.
   const std::vector<std::string>& order() const { return order_; }

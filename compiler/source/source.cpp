@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "compiler/source/encoding.h"
+
 namespace pmac::source {
 
 Span join(const Span& first, const Span& last) {
@@ -15,7 +17,8 @@ Span join(const Span& first, const Span& last) {
 }
 
 std::int32_t SourceManager::add_file(std::string name, std::string text, Span included_from) {
-  File file{std::move(name), std::move(text), included_from, {0}};
+  File file{std::move(name), decode_text(std::move(text)), included_from, {0}};
+  if (file.text.starts_with("\xef\xbb\xbf")) file.line_starts[0] = 3;
   for (std::size_t i = 0; i < file.text.size(); ++i)
     if (file.text[i] == '\n') file.line_starts.push_back(static_cast<std::uint32_t>(i + 1));
   files_.push_back(std::move(file));
@@ -30,7 +33,8 @@ std::int32_t SourceManager::add_expansion(std::string macro, Span definition) {
 LineColumn SourceManager::line_column(std::int32_t file_index, std::uint32_t offset) const {
   const auto& starts = file(file_index).line_starts;
   const auto next = std::upper_bound(starts.begin(), starts.end(), offset);
-  const auto line = static_cast<int>(next - starts.begin());
+  const auto line = std::max(1, static_cast<int>(next - starts.begin()));
+  offset = std::max(offset, starts.front());  // behind a byte-order mark
   return {line, static_cast<int>(offset - starts[static_cast<std::size_t>(line - 1)]) + 1};
 }
 

@@ -43,7 +43,7 @@ struct File {
 
 class SourceManager {
  public:
-  /// Takes a file in; CR LF and a byte-order mark stay as they are. Returns its index.
+  /// Takes a file in; CR LF and a byte-order mark stay as they are, UTF-16 becomes UTF-8. Returns its index.
   std::int32_t add_file(std::string name, std::string text, Span included_from = {});
   std::int32_t add_expansion(std::string macro, Span definition);
 

@@ -28,6 +28,10 @@ int explain(const std::string& code) {
 
 std::string stage_text(compiler::Session& session, const std::string& stage, const std::vector<compiler::InputFile>& files) {
   std::string text;
+  if (stage == "files") {
+    for (const compiler::InputFile& file : files) text += file.name + "\n";
+    return text;
+  }
   if (stage == "ir") return compiler::emit_ir(session, files);
   if (stage == "tokens" || stage == "tree") {
     for (const compiler::InputFile& file : files) text += stage == "tokens" ? compiler::emit_tokens(session, file) : compiler::emit_tree(session, file);
@@ -64,9 +68,9 @@ int run(const Arguments& arguments) {
     const int done = fix(arguments, options);
     if (arguments.fix_dry_run) return done;
   }
-  const std::vector<compiler::InputFile> files = read_inputs(arguments.files);
   compiler::Session session(options);
   set_error_limit(session, arguments);
+  const std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
   return arguments.emit.empty() ? compile(session, arguments, files) : emit(session, arguments, files);
 }
 

@@ -8,9 +8,23 @@
 #include <iostream>
 #include <iterator>
 
+#include "compiler/project/project.h"
 #include "compiler/tool/options.h"
 
 namespace pmac::pmacc {
+namespace {
+
+void add_project(const std::string& name, compiler::Session& session, std::vector<compiler::InputFile>& files) {
+  try {
+    compiler::project::Project project = compiler::project::read_project(name, session.sources(), session.diagnostics());
+    if (files.empty()) session.set_variable_starts(project.starts);
+    for (compiler::InputFile& file : project.files) files.push_back(std::move(file));
+  } catch (const compiler::project::Unreadable& problem) {
+    throw UsageError(problem.what());
+  }
+}
+
+}  // namespace
 
 std::string read_file(const std::string& name) {
   if (name == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
@@ -23,9 +37,12 @@ std::string read_file(const std::string& name) {
   return text;
 }
 
-std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& names) {
+std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& names, compiler::Session& session) {
   std::vector<compiler::InputFile> files;
-  for (const std::string& name : names) files.push_back({name == "-" ? "<stdin>" : name, read_file(name)});
+  for (const std::string& name : names) {
+    if (compiler::project::is_project(name)) add_project(name, session, files);
+    else files.push_back({name == "-" ? "<stdin>" : name, read_file(name)});
+  }
   return files;
 }
 

@@ -12,8 +12,9 @@ namespace pmac::pmacc {
 /// Text of a file, or of standard input for "-". Throws UsageError when it cannot be read.
 std::string read_file(const std::string& name);
 
-/// The files of the command line, in load order.
-std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& names);
+/// The files of the command line in load order, projects by their files. What is wrong inside of a project goes to the session,
+/// and its first numbers of variables too. Throws UsageError.
+std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& names, compiler::Session& session);
 
 /// Writes under another name first, so that a file of the wanted name is always whole. Throws UsageError.
 void write_file(const std::string& name, std::string_view bytes);

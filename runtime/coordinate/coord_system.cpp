@@ -19,6 +19,7 @@ CoordSystem::CoordSystem(Machine::State& machine, int number)
       runner_(RunnerKind::kMotionProgram, number, machine.p.data(), q.data()),
       kinematics_(RunnerKind::kKinematics, number, machine.p.data(), q.data()) {
   runner_.thread.coord = kinematics_.thread.coord = number;
+  runner_.thread.own_coord = kinematics_.thread.own_coord = number;
 }
 
 CoordSystem::~CoordSystem() = default;

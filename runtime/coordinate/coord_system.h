@@ -18,8 +18,10 @@
 #include <vector>
 
 #include "kinematics/kinematics.h"
+#include "compiler/bytecode/control.h"
 #include "runtime/coordinate/modal.h"
 #include "runtime/coordinate/time_base.h"
+#include "runtime/coordinate/transform.h"
 #include "runtime/machine.h"
 #include "runtime/motion/pipeline.h"
 #include "runtime/runner.h"
@@ -36,6 +38,9 @@ struct SyncEntry {
   std::uint64_t move_id = 0;   // executed when this move, dwell or delay starts
   bytecode::SourceLine source;
 };
+
+/// pmatch, pset (axis and value), pclr, pstore or pload.
+struct PositionChange { bytecode::ControlVerb verb; int axis = 0; double value = 0; };
 
 class CoordSystem {
  public:
@@ -77,6 +82,7 @@ class CoordSystem {
   bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
+  Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
@@ -86,6 +92,10 @@ class CoordSystem {
   Flow pause_from_inside(Thread& thread) { return stop_item(thread, AfterRest::kPause); }
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
+  /// Comes to rest and goes on at the next real-time interrupt.
+  Flow wait_for_interrupt(Thread& thread);
+  /// The same from the program: comes to rest, then it happens.
+  Flow change_positions(Thread& thread, const PositionChange& change);
 
   // --- time ---------------------------------------------------------------------------------------------------------------
   /// Next time at which service() has something to do; kNever if none.
@@ -102,18 +112,23 @@ class CoordSystem {
   // --- positions -----------------------------------------------------------------------------------------------------------
   /// pmatch: axis positions from the motors' commanded positions. Answers a refusal or empty.
   std::string match_positions(double time_ms);
+  /// pmatch, pset, pclr, pstore, pload while no program runs. Answers a refusal or empty.
+  std::string change_positions(double time_ms, const PositionChange& change);
   bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu);
   /// Positions of served_motors(), through the inverse routine where there is one.
   std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
   std::vector<int> served_motors() { return motor_map().motors; }
   std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
-  const AxisVector& calculated_position() const { return calculated_uu_; }
+  /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
+  const AxisVector& calculated_position() const { return program_uu_; }
   AxisVector commanded_position(double time_ms);
+  /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
+  AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
 
  private:
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHomeZero, kNextInterrupt, kPause, kEnd };
+  enum class AfterRest { kDwell, kRapid, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
 
   // control.cpp
   std::string start(double time_ms);
@@ -137,6 +152,8 @@ class CoordSystem {
   void settle_path(double time_ms);
   void finish_program();
   Flow end_block(Thread& thread);
+  std::optional<Fault> set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source);
+  std::optional<Fault> place(motion::MotionCommand& command);
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
@@ -150,6 +167,10 @@ class CoordSystem {
   void record_executed(double time_ms);
   motion::PipelineConfig config();
   motion::MotorMap motor_map();
+
+  // offsets.cpp
+  std::optional<Fault> select_transform(double number, bytecode::SourceLine source);
+  std::string rename_position();
 
   // positions.cpp
   std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
@@ -180,7 +201,11 @@ class CoordSystem {
   double sampled_to_ms_ = 0, sequence_start_ms_ = 0;
   double calculated_at_ms_ = -kNever;  // last calculation pass
   int moves_without_time_ = 0;
-  AxisVector calculated_uu_{};
+  ProgramFrame frame_;
+  AxisVector program_uu_{};     // end of the last calculated move in program coordinates
+  AxisVector placed_uu_{};      // program coordinates of the pipeline's calculated position
+  AxisVector calculated_uu_{};  // the pipeline's, in the coordinates of the axis definitions
+  PositionChange position_change_{};
   OpenBlock block_;
   double dwell_ms_ = 0;
   int home_motor_ = -1;

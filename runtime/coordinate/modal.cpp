@@ -20,7 +20,6 @@ bool is_circle(MoveMode mode) { return mode >= MoveMode::kCircle1 && mode <= Mov
 void fill_circle(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu, motion::MotionCommand& command) {
   command.clockwise = modal.mode == MoveMode::kCircle1 || modal.mode == MoveMode::kCircle3;
   command.second_set = modal.mode == MoveMode::kCircle3 || modal.mode == MoveMode::kCircle4;
-  command.normal = modal.normal;
   command.has_radius = block.has_radius;
   command.radius_uu = block.radius;
   const int first_word = command.second_set ? 3 : 0;
@@ -44,6 +43,21 @@ void fill_times(const ElementStore& e, unsigned cs, motion::MotionCommand& comma
   command.feed_time_ms = e.get(ElementId::kCoordFeedTime, cs);
   command.alt_feed_uu = e.get(ElementId::kCoordAltFeedRate, cs);
   command.inverse_time = e.get(ElementId::kCoordInvTimeMode, cs) != 0;
+}
+
+/// Index in PosRollOver of the axes A B C AA BB CC, or -1.
+int rollover_index(int axis) {
+  constexpr int kA = 0, kAA = 9;
+  return axis >= kA && axis < kA + 3 ? axis - kA : axis >= kAA && axis < kAA + 3 ? axis - kAA + 3 : -1;
+}
+
+/// The target that is a whole number of turns from the programmed one: within half a turn, or for turn < 0 less than a turn away
+/// in the direction of the programmed value's sign.
+double rolled_over(double value, double from, double turn) {
+  const double whole = std::abs(turn);
+  if (turn > 0) return from + std::remainder(value - from, whole);
+  const double forward = value - from - whole * std::floor((value - from) / whole);  // 0 .. whole
+  return from + (std::signbit(value) && forward > 0 ? forward - whole : forward);
 }
 
 ElementId element_of(MotionParameter parameter) {
@@ -78,11 +92,16 @@ void OpenBlock::add(WordKind kind, int index, double word) {
   }
 }
 
-AxisVector block_target(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu) {
+AxisVector block_target(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu, const ElementStore& elements,
+                        int coord) {
   AxisVector target = from_uu;
   for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
     if (!(block.axes >> axis & 1u)) continue;
-    target[axis] = modal.absolute_axes >> axis & 1u ? block.value[axis] : from_uu[axis] + block.value[axis];
+    const bool absolute = modal.absolute_axes >> axis & 1u;
+    target[axis] = absolute ? block.value[axis] : from_uu[axis] + block.value[axis];
+    if (const int i = rollover_index(axis); absolute && i >= 0)
+      if (const double turn = elements.get(ElementId::kCoordPosRollOver, static_cast<unsigned>(coord), static_cast<unsigned>(i)); turn != 0)
+        target[axis] = rolled_over(block.value[axis], from_uu[axis], turn);
   }
   return target;
 }
@@ -118,11 +137,29 @@ motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& bl
   command.kind = is_circle(modal.mode) ? motion::CommandKind::kCircle : motion::CommandKind::kLinear;
   command.source = source;
   command.axes = block.axes;
-  command.target_uu = block_target(modal, block, from_uu);
+  command.target_uu = block_target(modal, block, from_uu, elements, coord);
   command.feed_axes = modal.feed_axes;
+  command.feed_axes2 = modal.feed_axes2 & ~modal.feed_axes;
+  command.normal = modal.normal;
+  command.compensation_side = modal.compensation_side;
+  command.compensation_radius_uu = modal.compensation_radius_uu;
   if (is_circle(modal.mode)) fill_circle(modal, block, from_uu, command);
   fill_times(elements, static_cast<unsigned>(coord), command);
   return command;
+}
+
+std::optional<Fault> set_compensation(MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source) {
+  if (parameter == MotionParameter::kCcRadius) {
+    if (!std::isfinite(value) || value < 0)
+      return Fault{FaultKind::kBadTarget, source, fmt::format("ccr is {}; the radius of cutter compensation is a finite number, 0 or more", value)};
+    modal.compensation_radius_uu = value;
+    return std::nullopt;
+  }
+  if (value == 3) return Fault{FaultKind::kNotSimulated, source, "ccmode3, compensation in three dimensions, is not simulated"};
+  if (value != 0 && value != 1 && value != 2)
+    return Fault{FaultKind::kBadTarget, source, fmt::format("there is no ccmode{}; 0 is off, 1 left, 2 right", value)};
+  modal.compensation_side = static_cast<int>(value);
+  return std::nullopt;
 }
 
 std::optional<Fault> set_motion_parameter(MotionParameter parameter, double value, ElementStore& elements, int coord,

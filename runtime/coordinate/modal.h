@@ -24,8 +24,10 @@ struct ModalState {
   bytecode::MoveMode mode = bytecode::MoveMode::kLinear;
   std::uint32_t absolute_axes = kAllAxes;
   bool absolute_center = false;
-  std::uint32_t feed_axes = kDefaultFeedAxes;
+  std::uint32_t feed_axes = kDefaultFeedAxes, feed_axes2 = 0;
   std::array<double, 3> normal{0, 0, -1};
+  int compensation_side = 0;      // ccmode: 0 off, 1 left, 2 right
+  double compensation_radius_uu = 0;
 };
 
 /// The words of a move block so far.
@@ -41,8 +43,9 @@ struct OpenBlock {
   void add(bytecode::WordKind kind, int index, double word);
 };
 
-/// Absolute end point of the block from the calculated position.
-AxisVector block_target(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu);
+/// Absolute end point of the block from the calculated position; axes with a rollover (Coord[].PosRollOver) go the short way.
+AxisVector block_target(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu, const ElementStore& elements,
+                        int coord);
 
 /// The words that cannot be used in this mode, or a value that is not finite; nullopt: fine.
 std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block, bytecode::SourceLine source);
@@ -50,6 +53,9 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
 /// The motion command of a linear or circle block. from_uu: calculated position. Id and no_blend are the caller's.
 motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu,
                                     const ElementStore& elements, int coord, bytecode::SourceLine source);
+
+/// ccr and ccmode.
+std::optional<Fault> set_compensation(bytecode::MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source);
 
 /// Coord[].Ta, Td, Ts, Tsd, Tm, F of a SetMotion instruction; ta sets td too, ts sets tsd too.
 std::optional<Fault> set_motion_parameter(bytecode::MotionParameter parameter, double value, ElementStore& elements, int coord,

@@ -106,7 +106,7 @@ std::string CoordSystem::match_positions(double time_ms) {
     if (const std::string reason = forward_routine(motor_mu, matched); !reason.empty())
       return "error #39: NOT READY TO RUN: forward kinematics: " + reason;
   calculated_uu_ = matched;
-  return {};
+  return rename_position();
 }
 
 bool CoordSystem::axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu) {
@@ -121,7 +121,24 @@ AxisVector CoordSystem::commanded_position(double time_ms) {
   for (int motor : motors_) motor_mu[static_cast<std::size_t>(motor)] = machine_.motors[static_cast<std::size_t>(motor)].position_at(time_ms);
   AxisVector axis_uu = calculated_uu_;
   axes_from_motors(motor_mu, axis_uu);
-  return axis_uu;
+  AxisVector unknown;
+  unknown.fill(std::nan(""));
+  return frame_.to_program(machine_.elements, axis_uu).value_or(unknown);
+}
+
+AxisVector CoordSystem::commanded_velocity_uu_ms(double time_ms) {
+  const double half_ms = machine_.period_ms() / 2;
+  std::array<double, bytecode::kMaxMotors> before_mu{}, after_mu{};
+  for (int motor : motors_) {
+    const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    before_mu[static_cast<std::size_t>(motor)] = m.position_at(time_ms) - half_ms * m.velocity_at(time_ms);
+    after_mu[static_cast<std::size_t>(motor)] = m.position_at(time_ms) + half_ms * m.velocity_at(time_ms);
+  }
+  AxisVector before_uu{}, after_uu{};
+  axes_from_motors(before_mu, before_uu);
+  axes_from_motors(after_mu, after_uu);
+  for (std::size_t i = 0; i < after_uu.size(); ++i) after_uu[i] = (after_uu[i] - before_uu[i]) / (2 * half_ms);
+  return after_uu;
 }
 
 motion::MotorMap CoordSystem::motor_map() {

@@ -37,8 +37,7 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
       if (instruction.a == 1) modal.absolute_center = false;
       return Flow::kContinue;
     case Opcode::kSetFrax:
-      if (instruction.a == 1) return give_up(thread, {FaultKind::kNotSimulated, thread.source(), "frax2 is not simulated"});
-      modal.feed_axes = mask;
+      (instruction.a == 1 ? modal.feed_axes2 : modal.feed_axes) = mask;
       return Flow::kContinue;
     case Opcode::kSetNormal:
       modal.normal = {r[instruction.a], r[instruction.a + 1u], r[instruction.a + 2u]};
@@ -46,14 +45,15 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
         return give_up(thread, {FaultKind::kBadTarget, thread.source(), "the plane normal has no direction"});
       return Flow::kContinue;
     case Opcode::kSetMotion:
-      if (auto fault = set_motion_parameter(static_cast<bytecode::MotionParameter>(instruction.b()), r[instruction.a],
-                                            machine_.elements, number_, thread.source()))
+      if (auto fault = set_parameter(static_cast<bytecode::MotionParameter>(instruction.b()), r[instruction.a], thread.source()))
         return give_up(thread, *fault);
       return Flow::kContinue;
     case Opcode::kAxisWord:
       block_.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), r[instruction.a]);
       return Flow::kContinue;
-    case Opcode::kBlockEnd: return end_block(thread);
+    case Opcode::kBlockEnd: return block_.empty() ? Flow::kContinue : end_block(thread);
+    case Opcode::kStepBegin:
+    case Opcode::kStepEnd: return Flow::kContinue;
     case Opcode::kDwell:
     case Opcode::kDelay: {
       const double ms = r[instruction.a];
@@ -64,13 +64,22 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
         dwell_ms_ = ms;
         return stop_item(thread, AfterRest::kDwell);
       }
-      motion::MotionCommand command = block_command(modal, {}, calculated_uu_, machine_.elements, number_, thread.source());
+      motion::MotionCommand command = block_command(modal, {}, program_uu_, machine_.elements, number_, thread.source());
       command.kind = motion::CommandKind::kDelay;
       command.feed_uu = 0;
       command.move_time_ms = ms;
       return start_blendable(thread, command);
     }
     default: return give_up(thread, {FaultKind::kNotSimulated, thread.source(), "this motion statement is not simulated"});
+  }
+}
+
+std::optional<Fault> CoordSystem::set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source) {
+  switch (parameter) {
+    case bytecode::MotionParameter::kTsel: return select_transform(value, source);
+    case bytecode::MotionParameter::kCcRadius:
+    case bytecode::MotionParameter::kCcMode: return set_compensation(parameter, value, modal, source);
+    default: return set_motion_parameter(parameter, value, machine_.elements, number_, source);
   }
 }
 
@@ -84,10 +93,12 @@ Flow CoordSystem::end_block(Thread& thread) {
   thread.reset_jump_backs();
   if (auto fault = check_block(modal, block, thread.source())) return give_up(thread, *fault);
   if (modal.mode == MoveMode::kRapid) {
-    rapid_target_uu_ = block_target(modal, block, calculated_uu_);
+    motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
+    if (auto fault = place(command)) return give_up(thread, *fault);
+    rapid_target_uu_ = command.target_uu;
     return stop_item(thread, AfterRest::kRapid);
   }
-  motion::MotionCommand command = block_command(modal, block, calculated_uu_, machine_.elements, number_, thread.source());
+  motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
   if (command.kind == motion::CommandKind::kCircle && machine_.elements.get(ElementId::kCoordSegMoveTime, static_cast<unsigned>(number_)) <= 0)
     machine_.warn(command.source, fmt::format("a circle without segmentation is a straight line; set Coord[{}].SegMoveTime", number_));
   return start_blendable(thread, std::move(command));
@@ -105,13 +116,27 @@ Flow CoordSystem::home_zero(Thread& thread, int motor) {
   return stop_item(thread, AfterRest::kHomeZero);
 }
 
+Flow CoordSystem::wait_for_interrupt(Thread& thread) { return stop_item(thread, AfterRest::kNextInterrupt); }
+
+/// A command of program coordinates in machine coordinates; it becomes where the program is.
+std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
+  const AxisVector program_end = command.target_uu;
+  if (command.kind == motion::CommandKind::kCircle && command.has_radius && frame_.scales_circles(machine_.elements, command))
+    machine_.warn(command.source, fmt::format("the matrix Tdata[{}] scales the end point but not R; give the centre with I and J", frame_.transform));
+  if (auto fault = frame_.place(machine_.elements, placed_uu_, calculated_uu_, command)) return fault;
+  program_uu_ = placed_uu_ = program_end;
+  return std::nullopt;
+}
+
 Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command) {
   const auto cs = static_cast<unsigned>(number_);
   ensure_sequence(machine_.now_ms);
   command.id = next_id_;
   command.no_blend = machine_.elements.get(ElementId::kCoordNoBlend, cs) != 0 || machine_.elements.get(ElementId::kCoordOnceNoBlend, cs) != 0;
   machine_.elements.set(ElementId::kCoordOnceNoBlend, 0, cs);
+  command.transform = frame_.transform;
   if (machine_.options.observers.motion_command) machine_.options.observers.motion_command(number_, command);
+  if (auto fault = place(command)) return give_up(thread, *fault);
   if (auto fault = pipeline_.add(command)) return give_up(thread, *fault);
   if (++moves_without_time_ > kMaxMovesWithoutTime)
     return give_up(thread, {FaultKind::kRunTime, command.source, fmt::format("{} moves in a row took no time; the program does not come on", kMaxMovesWithoutTime)});
@@ -155,6 +180,8 @@ motion::PipelineConfig CoordSystem::config() {
   c.max_circle_accel = e.get(ElementId::kCoordMaxCirAccel, cs);
   c.max_feed_uu = e.get(ElementId::kCoordMaxFeedRate, cs);
   c.corner_blend_bp = e.get(ElementId::kCoordCornerBlendBp, cs);
+  c.corner_dwell_bp = e.get(ElementId::kCoordCornerDwellBp, cs);
+  c.added_dwell_ms = e.get(ElementId::kCoordAddedDwellTime, cs);
   c.map = motor_map();
   for (int motor : c.map.motors) {
     const auto n = static_cast<unsigned>(motor);
@@ -288,6 +315,11 @@ void CoordSystem::at_rest(double time_ms) {
       machine_.motors[static_cast<std::size_t>(home_motor_)].home_here(time_ms);
       if (const std::string refusal = match_positions(time_ms); !refusal.empty())
         return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
+      go_on(time_ms);
+      break;
+    case AfterRest::kPositions:
+      if (const std::string refusal = change_positions(time_ms, position_change_); !refusal.empty())
+        return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
       go_on(time_ms);
       break;
     case AfterRest::kPause: pause_here(time_ms); break;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "compiler/bytecode/function.h"
+#include "compiler/bytecode/letters.h"
 #include "compiler/bytecode/opcode.h"
 #include "compiler/bytecode/operators.h"
 #include "runtime/interpreter/fuse.h"
@@ -22,6 +23,10 @@
 namespace pmac::runtime {
 
 using bytecode::Opcode;
+
+namespace {
+constexpr unsigned kLetterF = 6;
+}
 
 RunResult InterpreterCore::run() {
   if (!thread_.active()) return {};
@@ -237,6 +242,12 @@ dispatch_next:
     r[pc->a] = apply_function(function, {&RC, count}, host_);
     NEXT();
   }
+  OP(LoadAddress) : SAVE(); LEAVE_UNLESS(load_address(*pc, r));
+  OP(LimitAddress) : limit_address(*pc, r); NEXT();
+  OP(LoadByteAddress) : SAVE(); LEAVE_UNLESS(load_byte_address(*pc, r));
+  OP(LoadText) : load_text(*pc, r); NEXT();
+  OP(FormatValue) : SAVE(); LEAVE_UNLESS(add_format_value(r[pc->a]));
+  OP(MemoryFunction) : SAVE(); LEAVE_UNLESS(memory_function(*pc, r, budget));
 
   OP(Jump) : JUMP();
   OP(JumpIfTrue) : if (r[pc->a] != 0.0) JUMP(); NEXT();
@@ -261,6 +272,25 @@ dispatch_next:
   OP(CallComputed) : CALL_MEMBER(call_computed(r[pc->a]));
   OP(Return) : CALL_MEMBER(return_from_routine());
   OP(Stop) : CALL_MEMBER(end_program());
+  OP(ScanLoop) : {
+    if (!thread_.ends_scans) NEXT();
+    COUNT_RUN();
+    pc = code + pc->imm;
+    STOP_HERE(RunStop::kJumpBack);
+  }
+  OP(LineBegin) : thread_.line_.resize(thread_.line_begin_); NEXT();
+  OP(LineWord) : set_line_word(*pc, r[pc->a]); NEXT();
+  OP(LineEnd) : thread_.line_.resize(thread_.line_begin_); NEXT();
+  OP(JumpIfTaken) : if (is_taken(pc->a)) JUMP(); NEXT();
+  OP(RequireTaken) : SAVE(); LEAVE_UNLESS(require_taken(pc->a) == Next::kContinue);
+  OP(CallCode) : CALL_MEMBER(call_code(pc->b(), r[pc->a], pc->c()));
+  OP(Read) : read_words(constants[pc->imm]); NEXT();
+  OP(FlagTest) : SAVE(); LEAVE_UNLESS(test_flag(*pc, r));
+  OP(FlagSet) : SAVE(); LEAVE_UNLESS(change_flag(r[pc->a], true) == Next::kContinue);
+  OP(FlagClear) : SAVE(); LEAVE_UNLESS(change_flag(r[pc->a], false) == Next::kContinue);
+  OP(CycleDefine) : SAVE(); LEAVE_UNLESS(define_cycle(r[pc->a]) == Next::kContinue);
+  OP(CycleUndefine) : thread_.cycle_.armed = false; NEXT();
+  OP(CycleCall) : CALL_MEMBER(call_cycle());
   OP(SyncStore) : SAVE(); LEAVE_UNLESS(sync_store(*pc, r) == Next::kContinue);
 
   MOTION(SetMode);
@@ -268,19 +298,36 @@ dispatch_next:
   MOTION(SetInc);
   MOTION(SetFrax);
   MOTION(SetNormal);
-  MOTION(SetMotion);
-  MOTION(AxisWord);
-  MOTION(BlockEnd);
+  OP(SetMotion) : {
+    const bool is_feed = pc->b() == static_cast<unsigned>(bytecode::MotionParameter::kFeed);
+    SAVE();
+    if (is_feed && dispatches_feed()) CALL_MEMBER(call_code(kLetterF, r[pc->a], bytecode::kMaxLineWords));
+    HOST(host_.motion(thread_, *pc, SPAN));
+  }
+  OP(AxisWord) : {
+    if (thread_.cycle_.armed && thread_.code_depth_ == 0) {
+      SAVE();
+      LEAVE_UNLESS(collect_cycle_word(*pc, r[pc->a]) == Next::kContinue);
+    }
+    HOST(host_.motion(thread_, *pc, SPAN));
+  }
+  OP(BlockEnd) : {
+    if (in_cycle_block()) CALL_MEMBER(end_cycle_block());
+    HOST(host_.motion(thread_, *pc, SPAN));
+  }
   MOTION(Dwell);
   MOTION(Delay);
+  MOTION(StepBegin);
+  MOTION(StepEnd);
   OP(Control) : HOST(host_.control(thread_, static_cast<bytecode::ControlVerb>(pc->a), {r + pc->b(), pc->c()}));
-  OP(Command) : HOST(host_.command(thread_, thread_.program_.module->strings[static_cast<std::size_t>(pc->imm)]));
-  OP(Send) : HOST(host_.send(thread_, pc->a, thread_.program_.module->strings[static_cast<std::size_t>(pc->imm)]));
+  OP(Command) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
+  OP(Send) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
   ONLINE(AddressCoord);
   ONLINE(AddressMotor);
   ONLINE(DefineAxis);
   ONLINE(DefinePointer);
   ONLINE(InstallProgram);
+  ONLINE(ExecuteProgram);
   ONLINE(Report);
 
 #include "runtime/interpreter/core_fused.inc"

@@ -32,12 +32,15 @@ bool InterpreterCore::find_label(double number, std::uint32_t& pc) {
   return true;
 }
 
-bool InterpreterCore::push_frame() {
+/// The words of the running line from first_word (an index of the thread's lines) on can be read by what is called.
+bool InterpreterCore::push_frame(std::size_t first_word) {
   if (thread_.frames_.size() >= kMaxCallDepth) {
     fault("calls are nested deeper than " + std::to_string(kMaxCallDepth));
     return false;
   }
-  thread_.frames_.push_back({thread_.program_, thread_.pc_ + 1, thread_.base_});
+  const std::size_t end_word = thread_.line_.size();
+  thread_.frames_.push_back({thread_.program_, thread_.pc_ + 1, thread_.base_, thread_.line_begin_, std::min(first_word, end_word), end_word, 0});
+  thread_.line_begin_ = end_word;
   return true;
 }
 
@@ -93,6 +96,9 @@ InterpreterCore::Next InterpreterCore::return_from_routine() {
   thread_.program_ = std::move(frame.program);
   thread_.pc_ = frame.return_pc;
   thread_.base_ = frame.base;
+  thread_.line_.resize(frame.end_word);
+  thread_.line_begin_ = frame.line_begin;
+  if (frame.letter != 0) --thread_.code_depth_;
   thread_.frames_.pop_back();
   return Next::kEnter;
 }

@@ -110,7 +110,7 @@ double apply_function(bytecode::Function function, std::span<const double> argum
     case Function::kTan: return std::tan(x);
     case Function::kTand: return tangent_deg(x);
     case Function::kTanh: return std::tanh(x);
-    case Function::kCount: break;
+    default: break;  // functions of addresses: InterpreterCore::memory_function
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

@@ -97,7 +97,7 @@ class Thread {
   void reset_jump_backs() { jump_backs_ = 0; }
   /// True from begin() until the program has ended or failed. Locals of the top frame stay readable after the end.
   bool active() const { return static_cast<bool>(program_); }
-  void stop() { program_ = {}; frames_.clear(); base_ = 0; }
+  void stop() { program_ = {}; frames_.clear(); base_ = 0; forget_lines(); format_values_.clear(); }
 
   const ProgramHandle& program() const { return program_; }     // the buffer that executes now (a called subprogram too)
   const ProgramHandle& top_program() const { return top_; }      // the buffer that was begun
@@ -115,8 +115,11 @@ class Thread {
   int motor = 0;          // Ldata.Motor
   int go_back = 10;       // Ldata.GoBack
   int command_status = 0; // Ldata.CmdStatus
-  int owner = -1;         // for the host's use: PLC number, coordinate system, ...
+  int own_coord = -1;     // coordinate system that executes this motion program; -1: none, coord is meant instead
+  bool ends_scans = false;// a PLC program: ScanLoop ends the scan
   void* context = nullptr;// for the host's use
+
+  int executing_coord() const { return own_coord >= 0 ? own_coord : coord; }
 
   void set_host_fault(Fault fault) { host_fault_ = std::move(fault); }
 
@@ -130,8 +133,37 @@ class Thread {
   std::uint32_t pc_ = 0;
   std::int64_t jump_backs_ = 0;
   std::optional<Fault> host_fault_;
-  struct SavedFrame { ProgramHandle program; std::uint32_t return_pc; std::size_t base; };
+  std::vector<double> format_values_;   // of the next text with a format
+
+  /// A letter-number word of the line that a frame executes.
+  struct LineWord { double value = 0; std::uint8_t letter = 0; bool taken = false; };
+  /// What a frame is called by: letter is that of a code, kCycle for a canned cycle, 0 else. Words first_word .. end_word of line_
+  /// are what the called routine can read.
+  struct SavedFrame {
+    ProgramHandle program;
+    std::uint32_t return_pc;
+    std::size_t base;
+    std::size_t line_begin, first_word, end_word;
+    std::uint8_t letter;
+  };
+  /// The modal call of cdef. words: given with cdef. block: words of the move block that is being collected for it.
+  struct Cycle {
+    struct BlockWord { std::uint16_t index; std::uint16_t kind; double value; };
+    bool armed = false, called = false;
+    double target = 0;
+    std::vector<LineWord> words;
+    std::vector<BlockWord> block;
+    std::size_t first_word = 0, first_block = 0;  // in line_: words that the called cycle can read, and those of them that are not from cdef
+  };
+  static constexpr std::uint8_t kCycle = 255;
+
+  void forget_lines();
+
   std::vector<SavedFrame> frames_;
+  std::vector<LineWord> line_;    // lines of all frames, the running frame's last
+  std::size_t line_begin_ = 0;    // where the running frame's line begins
+  int code_depth_ = 0;            // frames that a code letter or a canned cycle has called
+  Cycle cycle_;
 };
 
 /// Evaluates a scalar function. Domain errors give nan.

@@ -8,6 +8,7 @@ bool Thread::begin(ProgramHandle program, std::int64_t label) {
   top_ = program;
   const bytecode::Program& code = *program.program;
   stack_.assign(std::size_t{code.frame_size} + code.outgoing_count, 0.0);
+  cycle_ = {};
   return stand_at_top(label);
 }
 
@@ -16,12 +17,22 @@ bool Thread::restart() { return top_ && stand_at_top(-1); }
 bool Thread::stand_at_top(std::int64_t label) {
   program_ = top_;
   frames_.clear();
+  forget_lines();
   base_ = 0;
   jump_backs_ = 0;
   host_fault_.reset();
+  format_values_.clear();
   const bytecode::LabelEntry* entry = label < 0 ? nullptr : bytecode::find_label(*program_.program, label);
   pc_ = entry == nullptr ? 0 : entry->pc;
   return label < 0 || entry != nullptr;
+}
+
+void Thread::forget_lines() {
+  line_.clear();
+  line_begin_ = 0;
+  code_depth_ = 0;
+  cycle_.called = false;
+  cycle_.block.clear();
 }
 
 RunResult Thread::run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit) {

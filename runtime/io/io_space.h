@@ -25,6 +25,7 @@ class IoSpace {
   bool set_word(std::uint32_t address, std::uint32_t word);
 
   const UserMemory& user() const { return user_; }
+  UserMemory& user() { return user_; }
 
  private:
   std::unordered_map<std::uint32_t, std::uint32_t> words_;

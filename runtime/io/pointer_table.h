@@ -3,6 +3,7 @@
 // kinds in IoSpace, elements with read_bit_field() and write_bit_field().
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "compiler/bytecode/bytecode.h"
@@ -32,5 +33,8 @@ class PointerTable {
  private:
   std::vector<PointerEntry> entries_;
 };
+
+/// What stands behind the arrow of the definition: "*", "u.io:$A0000C.12.1", "d.user:32". element: name of the element of kElement.
+std::string definition_text(const bytecode::PointerDefinition& definition, const std::string& element);
 
 }  // namespace pmac::runtime

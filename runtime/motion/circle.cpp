@@ -66,7 +66,7 @@ double sweep_angle(const Vector3d& u, const Vector3d& e, const Vector3d& turn, d
 void store(std::array<double, 3>& to, const Vector3d& from) { std::copy(from.data(), from.data() + 3, to.begin()); }
 
 Arc arc_about(const Vector3d& center, const Plane& plane, const AxisVector& start, const AxisVector& end, int first_axis,
-              double min_arc_len) {
+              double min_arc_len, double sweep_rad) {
   const Vector3d u = -center, e = plane.chord - center;
   Arc arc{line(start, end), 0, std::min(u.norm(), e.norm())};
   Curve& curve = arc.curve;
@@ -76,7 +76,7 @@ Arc arc_about(const Vector3d& center, const Plane& plane, const AxisVector& star
   for (std::size_t i = 0; i < 3; ++i) curve.delta[static_cast<std::size_t>(first_axis) + i] = plane.lift[static_cast<Eigen::Index>(i)];
   curve.radius = u.norm();
   curve.radius_change = e.norm() - u.norm();
-  curve.sweep_rad = sweep_angle(u, e, plane.turn, min_arc_len);
+  curve.sweep_rad = sweep_rad > 0 ? sweep_rad : sweep_angle(u, e, plane.turn, min_arc_len);
   store(curve.center, plane.start + center);
   store(curve.radial, u.normalized());
   store(curve.tangential, plane.turn.cross(u.normalized()));
@@ -102,7 +102,7 @@ Result<Arc> make_arc(const MotionCommand& command, const AxisVector& start, cons
   const double error = std::abs(end_radius - start_radius);
   if (config.radius_error_limit_uu > 0 && error > config.radius_error_limit_uu)
     return circle_fault(command, fmt::format("radius is {} at the start and {} at the end point", start_radius, end_radius));
-  return arc_about(center, plane, start, end, first_axis, config.min_arc_len);
+  return arc_about(center, plane, start, end, first_axis, config.min_arc_len, command.sweep_rad);
 }
 
 }  // namespace pmac::motion

@@ -59,13 +59,13 @@ std::array<double, 3> in_plane(const AxisVector& velocity, const Move& move) {
   return result;
 }
 
-/// CornerBlendBp: the cosine of the change in direction is below the set one.
-bool corner_is_too_sharp(const Corner& corner, const Move& next, double corner_blend_bp) {
-  if (corner_blend_bp == 0) return false;
+/// The cosine of the change in direction is below the set one (CornerBlendBp, CornerDwellBp).
+bool corner_is_too_sharp(const Corner& corner, const Move& next, double cosine) {
+  if (cosine == 0) return false;
   const auto a = in_plane(corner.before, next), b = in_plane(corner.after, next);
   const double product = std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]);
   if (product == 0) return false;
-  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / product < corner_blend_bp;
+  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / product < cosine;
 }
 
 std::vector<double> motor_change(const Move& previous, const Move& next) {
@@ -80,10 +80,15 @@ std::vector<double> motor_change(const Move& previous, const Move& next) {
 Join decide_join(const Move& previous, const Move& next, double entry_total_ms, const PipelineConfig& config) {
   const Corner corner = corner_between(previous, next);
   const std::uint32_t axes = previous.curve->moved | next.curve->moved;
+  if (corner_is_too_sharp(corner, next, config.corner_dwell_bp)) {
+    Join stop;
+    stop.dwell_ms = config.added_dwell_ms;
+    return stop;
+  }
   if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) return {};
   const Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
   const double room = std::min(2 * previous.time_ms - entry_total_ms, 2 * next.time_ms - next.stop_ramp.total_ms());
-  Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after};
+  Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after, 0};
   if (config.segment_time_ms > 0) {
     if (ramp.total_ms() > room) join.ramp = scaled_to(ramp, std::max(0.0, room));
     return join;

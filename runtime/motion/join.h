@@ -17,6 +17,7 @@ struct Join {
   JoinKind kind = JoinKind::kStop;
   Ramp ramp;                    // of a blend
   double speed_before = 0, speed_after = 0;  // at the join, over all axes, uu/ms
+  double dwell_ms = 0;          // of a stop: how long it waits
 };
 
 /// entry_total_ms: length of the ramp or blend into `previous`.

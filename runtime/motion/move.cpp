@@ -50,11 +50,12 @@ double longest(const Curve& curve, std::uint32_t axes) {
   return result;
 }
 
+std::uint32_t circle_axes_of(const Curve& curve) { return curve.is_arc ? 7u << curve.first_axis : 0; }
+
 /// Length over the feed-rate axes; the three axes of an arc always count, with the arc in place of its chord.
 double feed_length(const Arc& arc, const MotionCommand& command) {
   const Curve& curve = arc.curve;
-  const std::uint32_t circle_axes = curve.is_arc ? 7u << curve.first_axis : 0;
-  return std::hypot(arc.length_uu, norm(curve.delta, (command.feed_axes | circle_axes) & curve.moved));
+  return std::hypot(arc.length_uu, norm(curve.delta, (command.feed_axes | circle_axes_of(curve)) & curve.moved));
 }
 
 /// Feed rate in effect, uu per feed time: clipped by MaxFeedRate, and on an arc by MaxCirAccel (v^2/R).
@@ -71,12 +72,13 @@ double programmed_time_ms(const MotionCommand& command, const Arc& arc, double l
   if (command.kind == CommandKind::kDelay) return std::max(command.move_time_ms, config.segment_time_ms);
   if (command.feed_uu == 0) return command.move_time_ms;
   if (command.inverse_time) return command.feed_time_ms / command.feed_uu;
-  const std::uint32_t circle_axes = arc.curve.is_arc ? 7u << arc.curve.first_axis : 0;
-  const double other = longest(arc.curve, ~(command.feed_axes | circle_axes));
+  const std::uint32_t circle_axes = circle_axes_of(arc.curve);
+  const double other = longest(arc.curve, ~(command.feed_axes | command.feed_axes2 | circle_axes));
+  const double second_uu = norm(arc.curve.delta, command.feed_axes2 & ~circle_axes & arc.curve.moved);
   const double feed = feed_in_effect(command, arc, length_uu, config);
-  double time_ms = length_uu / feed * command.feed_time_ms;
+  double time_ms = std::max(length_uu, second_uu) / feed * command.feed_time_ms;
   if (command.alt_feed_uu > 0) time_ms = std::max(time_ms, other / command.alt_feed_uu * command.feed_time_ms);
-  if (command.alt_feed_uu <= 0 && length_uu == 0) time_ms = other / feed * command.feed_time_ms;
+  if (command.alt_feed_uu <= 0 && time_ms == 0) time_ms = other / feed * command.feed_time_ms;
   return time_ms;
 }
 

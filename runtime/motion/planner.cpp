@@ -75,6 +75,7 @@ void Planner::add(Move move, const PipelineConfig& config, PlannerOutput& out) {
   const Join join = decide_join(*pending_, move, entry_total_ms_, config);
   if (join.kind == JoinKind::kStop) {
     stop(out);
+    if (join.dwell_ms > 0) wait(move, join.dwell_ms, out);
     return begin(std::move(move), config, out);
   }
   const double boundary_ms = nominal_end_ms();
@@ -126,6 +127,13 @@ void Planner::stop(PlannerOutput& out) {
   clock_ms_ = nominal_end_ms() + ramp.total_ms() / 2;
   out.ends.push_back({pending_->id, clock_ms_});
   pending_.reset();
+}
+
+/// Rest at the start of the move to come.
+void Planner::wait(const Move& next, double duration_ms, PlannerOutput& out) {
+  rest_before_ = true;
+  emit(next, clock_ms_, duration_ms, {PathPart{next.curve, {0, 0, 0, 0}}}, out);
+  clock_ms_ += duration_ms;
 }
 
 void Planner::cruise_until(double time_ms, PlannerOutput& out) {

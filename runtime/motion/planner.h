@@ -53,6 +53,7 @@ class Planner {
  private:
   void begin(Move move, const PipelineConfig& config, PlannerOutput& out);
   void stop(PlannerOutput& out);
+  void wait(const Move& next, double duration_ms, PlannerOutput& out);
   void pass_over(const Move& move, PlannerOutput& out);
   void blend(const Join& join, const Move& next, PlannerOutput& out);
   void blend_along_path(const Join& join, const Move& next, PlannerOutput& out);

@@ -25,6 +25,7 @@ const char* name_of(CommandKind kind) {
     case CommandKind::kLinear: return "linear";
     case CommandKind::kCircle: return "circle";
     case CommandKind::kDelay: return "delay";
+    case CommandKind::kPvt: return "pvt";
   }
   return "?";
 }
@@ -40,6 +41,18 @@ std::string circle_words(const MotionCommand& command) {
 std::string speed_words(const MotionCommand& command) {
   if (command.kind == CommandKind::kDelay || command.feed_uu == 0) return fmt::format("tm={}", command.move_time_ms);
   return fmt::format("{}={}", command.inverse_time ? "G93F" : "F", command.feed_uu);
+}
+
+/// Modes that are not the usual ones.
+std::string mode_words(const MotionCommand& command) {
+  std::string text;
+  if (command.feed_axes2 != 0) {
+    text += " frax2=";
+    for_each_axis(command.feed_axes2, [&](std::size_t axis) { text += kAxisNames[axis]; });
+  }
+  if (command.transform >= 0) text += fmt::format(" tsel={}", command.transform);
+  if (command.compensation_side != 0) text += fmt::format(" ccmode={} ccr={}", command.compensation_side, command.compensation_radius_uu);
+  return text;
 }
 
 /// Axes that differ between the ends of the piece, and where they end.
@@ -69,9 +82,9 @@ std::string segment_header() { return "# command line start_ms duration_ms end_m
 std::string timed_segment_header() { return "# command line time_ms duration_ms programmed_ms rate end_rate end_mu[motor]"; }
 
 std::string to_text(const MotionCommand& command) {
-  return fmt::format("{} line {} {}{}{} {} ta={} td={} ts={} tsd={}{}", command.id, command.source.line, name_of(command.kind),
+  return fmt::format("{} line {} {}{}{} {} ta={} td={} ts={} tsd={}{}{}", command.id, command.source.line, name_of(command.kind),
                      circle_words(command), axis_words(command.target_uu, command.axes), speed_words(command), command.ta_ms,
-                     command.td_ms, command.ts_ms, command.tsd_ms, command.no_blend ? " stop" : "");
+                     command.td_ms, command.ts_ms, command.tsd_ms, mode_words(command), command.no_blend ? " stop" : "");
 }
 
 std::string to_text(const PathPiece& piece) {

@@ -18,7 +18,7 @@ using bytecode::kAxisCount;
 using bytecode::SourceLine;
 using AxisVector = std::array<double, kAxisCount>;  // one value an axis, by axis index
 
-enum class CommandKind : std::uint8_t { kLinear, kCircle, kDelay };
+enum class CommandKind : std::uint8_t { kLinear, kCircle, kDelay, kPvt };
 
 /// Hop 5: one blendable move as the line asked for it. (Rapid moves, dwells and jogs end a sequence and are the coordinate
 /// system's own; they never reach the path stages.)
@@ -29,6 +29,7 @@ struct MotionCommand {
   std::uint32_t axes = 0;               // mask of the axes named in the block (1 << axis index)
   AxisVector target_uu{};               // absolute end point of the axes in `axes`
   std::uint32_t feed_axes = 0;          // mask of the feed-rate axes (frax)
+  std::uint32_t feed_axes2 = 0;         // mask of the secondary set (frax2)
   // circle only
   bool clockwise = false;               // circle1/circle3: right-handed about `normal`
   bool second_set = false;              // circle3/circle4 on XX YY ZZ
@@ -36,6 +37,7 @@ struct MotionCommand {
   bool has_center = false, has_radius = false;
   std::array<double, 3> center_uu{};    // of has_center: vector from the start point to the centre
   double radius_uu = 0;                 // of has_radius: > 0 arc up to 180 degrees, < 0 the long way
+  double sweep_rad = 0;                 // > 0: the arc's angle, where the points alone do not tell (compensated arcs)
   // speed and time
   double feed_uu = 0;                   // axis units per feed_time_ms, > 0; 0: move_time_ms counts
   double move_time_ms = 0;              // tm, or the time of a delay; >= 0
@@ -44,6 +46,12 @@ struct MotionCommand {
   bool inverse_time = false;            // InvTimeMode: feed_uu is moves per feed time
   double ta_ms = 0, td_ms = 0, ts_ms = 0, tsd_ms = 0;  // negative: rates, see reference in ramp.h
   bool no_blend = false;                // stop at the end of this move
+  AxisVector end_velocity_uu_ms{};      // pvt only: velocity at the end; the time is move_time_ms
+  // modes that stages before the planner act on
+  int transform = -1;                   // selected matrix Tdata[transform]; -1: none
+  int compensation_side = 0;            // ccmode: 0 off, 1 left, 2 right
+  double compensation_radius_uu = 0;    // ccr
+  bool added = false;                   // put in by cutter compensation
 };
 
 /// Limits of one motor that programmed moves respect. 0: off, for the inverse ones.
@@ -81,6 +89,8 @@ struct PipelineConfig {
   double max_circle_accel = 0;          // uu per feed_time^2; 0: off
   double max_feed_uu = 0;               // MaxFeedRate, 0: off
   double corner_blend_bp = 0;           // cosine; 0: off
+  double corner_dwell_bp = 0;           // cosine; 0: off
+  double added_dwell_ms = 0;            // at corners of corner_dwell_bp
   bool jerk_limit_unsegmented = false;  // InvJmax acts on unsegmented S-curve ramps
   std::vector<MotorLimits> limits;      // [motor], as MotorMap::motors
   MotorMap map;

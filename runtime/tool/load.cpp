@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "compiler/bytecode/object_file.h"
+#include "compiler/project/project.h"
 #include "compiler/source/format.h"
 
 namespace pmac::tool {
@@ -50,6 +51,19 @@ int compile_pending(std::vector<compiler::InputFile>& pending, compiler::Session
   return kExitOk;
 }
 
+/// The files of a project take its place; what is wrong inside of it is reported when they are compiled.
+int add_project(const std::string& name, compiler::Session& session, std::vector<compiler::InputFile>& pending) {
+  try {
+    compiler::project::Project project = compiler::project::read_project(name, session.sources(), session.diagnostics());
+    if (pending.empty()) session.set_variable_starts(project.starts);
+    for (compiler::InputFile& file : project.files) pending.push_back(std::move(file));
+    return kExitOk;
+  } catch (const compiler::project::Unreadable& problem) {
+    std::fprintf(stderr, "pmac-run: %s\n", problem.what());
+    return kExitUsage;
+  }
+}
+
 int load_object(const std::string& name, const std::string& bytes, compiler::Session& session, runtime::Machine& machine) {
   auto loaded = bytecode::load(as_bytes(bytes));
   if (const auto* error = std::get_if<bytecode::ObjectFileError>(&loaded)) {
@@ -80,6 +94,10 @@ bool read_file(const std::string& name, std::string& bytes) {
 int load_files(const RunOptions& options, compiler::Session& session, runtime::Machine& machine) {
   std::vector<compiler::InputFile> pending;
   for (const std::string& name : options.files) {
+    if (compiler::project::is_project(name)) {
+      if (const int code = add_project(name, session, pending); code != kExitOk) return code;
+      continue;
+    }
     std::string text;
     if (!read_file(name, text)) {
       std::fprintf(stderr, "pmac-run: cannot read %s: %s\n", name.c_str(), std::strerror(errno));

@@ -2,6 +2,7 @@
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
+#include "compiler/bytecode/letters.h"
 #include "compiler/bytecode/opcode.h"
 
 namespace pmac::reference {
@@ -107,6 +108,7 @@ Symbol Maker::symbol() { return {any(SymbolKind::kCount), word(), below(9000), b
 
 void Maker::fill_tables() {
   for (unsigned i = 1 + below(3); i > 0; --i) module_.files.push_back(word());
+  module_.constants.push_back(static_cast<double>(random_()) * (kLetterMaskEnd / 4294967296.0));
   for (unsigned i = 1 + below(20); i > 0; --i) module_.constants.push_back(number());
   for (unsigned i = 1 + below(5); i > 0; --i) module_.strings.push_back(word());
   module_.element_refs.push_back(element(true));
@@ -141,7 +143,11 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kRegD: return Instruction::with_imm(op, reg(), imm_below(kDCount));
     case OperandFormat::kRegRegClass: return Instruction::with_bc(op, reg(), reg(), below(8));
     case OperandFormat::kRegElement: return Instruction::with_imm(op, reg(), imm_below(module_.element_refs.size()));
-    case OperandFormat::kFunc: return Instruction::with_bc(op, reg(), below(static_cast<unsigned>(Function::kCount)), reg(3));
+    case OperandFormat::kFunc: {
+      Function function = any(Function::kCount);
+      while (function_info(function).uses_memory != (op == Opcode::kMemoryFunction)) function = any(Function::kCount);
+      return Instruction::with_bc(op, reg(), static_cast<unsigned>(function), reg(9));
+    }
     case OperandFormat::kJump:
     case OperandFormat::kRegJump: return Instruction::with_imm(op, reg(), static_cast<std::int32_t>(pc + 1 + below(size - pc - 1)));
     case OperandFormat::kLoop:
@@ -162,6 +168,11 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kRegString: return Instruction::with_imm(op, reg(), imm_below(module_.strings.size()));
     case OperandFormat::kAxisDef: return Instruction::with_imm(op, 0, imm_below(module_.axis_definitions.size()));
     case OperandFormat::kPointerDef: return Instruction::with_imm(op, 0, imm_below(module_.pointer_definitions.size()));
+    case OperandFormat::kRegWordOf: return Instruction::with_bc(op, reg(), 1 + below(kLetterCount), below(flip() ? 4 : kMaxLineWords));
+    case OperandFormat::kWordJump: return Instruction::with_imm(op, below(4), static_cast<std::int32_t>(pc + 1 + below(size - pc - 1)));
+    case OperandFormat::kWord: return Instruction::with_imm(op, below(4), 0);
+    case OperandFormat::kCodeOf: return Instruction::with_bc(op, reg(), static_cast<unsigned>(letter_number(std::string(1, "DFGHMST"[below(7)]))), below(4));
+    case OperandFormat::kLetters: return Instruction::with_imm(op, 0, 0);  // constant 0 is a mask
     case OperandFormat::kProgram: return Instruction::with_imm(op, 0, 0);  // program 0 is a buffer
   }
   return {};

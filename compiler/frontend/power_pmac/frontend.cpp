@@ -34,13 +34,20 @@ ir::Unit Frontend::read(const std::string& name, std::string text) {
   return Lowering(*tree, state_->diagnostics).lower_file(tree->root);
 }
 
+namespace {
+
+/// Tokens that the token pass has put in; no text stands behind them.
+bool is_made_up(std::size_t type) { return type == grammar::PowerPmacParser::JOIN || type == grammar::PowerPmacParser::LINE_END; }
+
+}  // namespace
+
 std::string Frontend::tokens(const std::string& name, std::string text) {
   const auto tree = lex(state_->expand(name, std::move(text)), state_->names);
   std::string out;
   for (const antlr4::Token* token : tree->tokens->getTokens()) {
     if (token->getType() == antlr4::Token::EOF) break;
-    if (token->getType() == grammar::PowerPmacParser::JOIN) {
-      out += "  JOIN\n";
+    if (is_made_up(token->getType())) {
+      out += fmt::format("  {}\n", token_name(token->getType()));
       continue;
     }
     const source::Span span = tree->span_of(*token);
@@ -57,7 +64,7 @@ namespace {
 void print_tree(const SyntaxTree& tree, antlr4::tree::ParseTree* node, int depth, std::string& out) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
   if (auto* leaf = dynamic_cast<antlr4::tree::TerminalNode*>(node)) {
-    if (leaf->getSymbol()->getType() != grammar::PowerPmacParser::JOIN && leaf->getSymbol()->getType() != antlr4::Token::EOF) out += fmt::format("{}'{}'\n", indent, tree.text_of(*leaf->getSymbol()));
+    if (!is_made_up(leaf->getSymbol()->getType()) && leaf->getSymbol()->getType() != antlr4::Token::EOF) out += fmt::format("{}'{}'\n", indent, tree.text_of(*leaf->getSymbol()));
     return;
   }
   const auto* rule = dynamic_cast<antlr4::ParserRuleContext*>(node);

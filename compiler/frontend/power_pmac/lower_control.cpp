@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <limits>
 
 #include "compiler/bytecode/control.h"
@@ -38,6 +40,25 @@ bool acts_on_motors(ControlVerb verb) {
   return verb == ControlVerb::kHome || verb == ControlVerb::kHomeZero || verb == ControlVerb::kKill || verb == ControlVerb::kDelayedKill;
 }
 
+bool is_hex(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// The character that stands at `at` behind a backslash, as in C; at moves to its last digit where it has several.
+char escaped_character(std::string_view text, std::size_t& at) {
+  constexpr std::string_view kLetters = "abfnrtv", kCharacters = "\a\b\f\n\r\t\v";
+  const char c = text[at];
+  if (const std::size_t letter = kLetters.find(c); letter != std::string_view::npos) return kCharacters[letter];
+  const bool octal = c >= '0' && c <= '7';
+  if (!octal && !(c == 'x' && is_hex(text[at + 1]))) return c;
+  const int base = octal ? 8 : 16;
+  const std::size_t first = octal ? at : at + 1;
+  std::size_t end = first;
+  while (end < first + (octal ? 3 : 2) && (octal ? text[end] >= '0' && text[end] <= '7' : is_hex(text[end]))) ++end;
+  int value = 0;
+  std::from_chars(text.data() + first, text.data() + end, value, base);
+  at = end - 1;
+  return static_cast<char>(value);
+}
+
 }  // namespace
 
 std::string Lowering::string_value(const antlr4::Token& token) const {
@@ -45,8 +66,7 @@ std::string Lowering::string_value(const antlr4::Token& token) const {
   std::string value;
   for (std::size_t i = 1; i + 1 < text.size(); ++i) {
     if (text[i] != '\\' || i + 2 >= text.size()) { value += text[i]; continue; }
-    const char next = text[++i];
-    value += next == 'n' ? '\n' : next == 't' ? '\t' : next == 'r' ? '\r' : next;
+    value += escaped_character(text, ++i);
   }
   return value;
 }
@@ -102,13 +122,8 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
   const source::Span span = span_of(control);
   if (control->JOG()) return lower_jog(control->jogAction(), span, out);
   if (control->BEGIN() || control->START()) return lower_start(control, out);
-  if (control->CMD()) return out.push_back(ir::make_stmt(span, ir::Command{string_value(*control->STRING()->getSymbol()), {}}));
-  if (control->SEND()) {
-    if (!control->expression().empty()) return not_supported(span, "send with values");
-    const auto port = control->NUMBER() ? whole_number(token_of(control->NUMBER()), 7).value_or(0) : 0;
-    return out.push_back(ir::make_stmt(span, ir::Send{static_cast<int>(port), string_value(*control->STRING()->getSymbol()), {}}));
-  }
-  if (control->SENDALLCMDS()) return not_supported(span, "sendallcmds");
+  if (control->CMD() || control->SEND()) return lower_text_out(control, out);
+  if (control->SENDALLCMDS()) return add_control(ControlVerb::kSendAllCommands, span, {}, out);
   ControlVerb verb = ControlVerb::kPmatch;
   if (control->LH()) {
     const std::string direction = text_of(control->direction);
@@ -128,6 +143,18 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
     if (control->data()) arguments.push_back(lower_data(control->data()));
     add_control(verb, span, std::move(arguments), out);
   }
+}
+
+/// cmd "&1 b%dr", n and send1 "%f", value.
+void Lowering::lower_text_out(P::ProgramControlContext* control, ir::Body& out) {
+  if (!control->STRING()) return;
+  std::string text = string_value(*control->STRING()->getSymbol());
+  std::vector<ir::ExprPtr> values;
+  for (P::ArgumentContext* argument : control->argument()) values.push_back(lower_argument(argument));
+  const source::Span span = span_of(control);
+  if (control->CMD()) return out.push_back(ir::make_stmt(span, ir::Command{std::move(text), std::move(values)}));
+  const auto port = control->NUMBER() ? whole_number(token_of(control->NUMBER()), 7).value_or(0) : 0;
+  out.push_back(ir::make_stmt(span, ir::Send{static_cast<int>(port), std::move(text), std::move(values)}));
 }
 
 /// begin1:500, begin:500, start3:500; on-line also start500.

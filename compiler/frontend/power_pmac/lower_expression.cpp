@@ -157,8 +157,13 @@ ir::ExprPtr Lowering::lower_variable(P::VariableContext* variable) {
 std::vector<ir::ExprPtr> Lowering::lower_arguments(P::ArgumentsContext* arguments) {
   std::vector<ir::ExprPtr> values;
   if (!arguments) return values;
-  for (P::ExpressionContext* argument : arguments->expression()) values.push_back(lower_expression(argument));
+  for (P::ArgumentContext* argument : arguments->argument()) values.push_back(lower_argument(argument));
   return values;
+}
+
+ir::ExprPtr Lowering::lower_argument(P::ArgumentContext* argument) {
+  if (argument->expression()) return lower_expression(argument->expression());
+  return std::make_unique<ir::Expr>(ir::Expr{span_of(argument), ir::AddressOf{lower_lvalue(argument->lvalue())}});
 }
 
 ir::ExprPtr Lowering::lower_reference(P::ReferenceContext* reference) {

@@ -120,7 +120,7 @@ std::uint32_t Lowering::axis_mask(P::AxisListContext* list, bool* centres) {
   std::uint32_t mask = 0;
   for (P::AxisNameContext* name : list->axisName()) {
     const std::string text = text_of(name->start);
-    if (centres && lower_case(text) == "r") {
+    if (centres && (lower_case(text) == "r" || vector_index(text) >= 0)) {
       *centres = true;
       continue;
     }
@@ -155,6 +155,7 @@ void Lowering::append_words(P::MoveWordContext* word, std::vector<ir::Word>& wor
 
 /// A repeated letter begins a new block: X5 Y10 X7 Y13 are two moves.
 void Lowering::lower_move(P::MoveContext* move, ir::Body& out) {
+  if (!move->lineWord().empty()) return out.push_back(lower_move_with_words(move));
   std::vector<ir::Word> words;
   const auto finish = [&] {
     if (words.empty()) return;

@@ -221,7 +221,7 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
 
 void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
   const source::Span span = span_of(online);
-  if (!online->pointerTarget()) return not_supported(span, "asking for a pointer definition");
+  if (!online->pointerTarget()) return lower_pointer_query(online, out);
   bytecode::PointerDefinition definition;
   if (online->LETTER_M()) {
     definition.first_m = static_cast<std::int32_t>(whole_number(token_of(online->NUMBER(0)), bytecode::kMCount - 1).value_or(0));
@@ -237,6 +237,14 @@ void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
   node.name_span = span_of(online->reference());
   node.size = -1;  // an existing name
   out.push_back(std::move(statement));
+}
+
+/// M5-> and Name->: answers the definition.
+void Lowering::lower_pointer_query(P::OnlineContext* online, ir::Body& out) {
+  std::vector<ir::ExprPtr> arguments;
+  if (online->LETTER_M()) arguments.push_back(lower_number(token_of(online->NUMBER(0))));
+  else arguments.push_back(lower_reference(online->reference()));
+  add_control(ControlVerb::kReportPointer, span_of(online), std::move(arguments), out);
 }
 
 void Lowering::lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out) {

@@ -75,7 +75,7 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* label = statement->label()) return lower_label(label, out);
   if (auto* declaration = statement->declaration()) return lower_declaration(declaration, out);
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
-  if (auto* code = statement->codeLine()) return not_supported(span_of(code), fmt::format("the code letter {}", text_of(code->start)));
+  if (auto* code = statement->codeLine()) return lower_code_line(code, out);
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
   if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
   if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
@@ -126,6 +126,11 @@ void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
 }
 
 void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
+  if (assignment->call) {
+    ir::NameUse use{text_of(assignment->call), true, lower_arguments(assignment->arguments())};
+    const source::Span span = span_of(assignment);
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   ir::Assign result;
   result.target = lower_lvalue(assignment->lvalue());
   if (assignment->step) {
@@ -148,8 +153,11 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
   if (statement->CONTINUE()) return out.push_back(ir::make_stmt(span, ir::Continue{}));
   if (statement->RETURN()) return out.push_back(ir::make_stmt(span, ir::Return{}));
   if (statement->STOP()) return out.push_back(ir::make_stmt(span, ir::Stop{}));
-  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(lower_jump(statement));
-  if (statement->CALL()) return out.push_back(lower_call(statement));
+  if (statement->GOTO() || statement->GOSUB() || statement->CALLSUB()) return out.push_back(with_words(lower_jump(statement), statement->lineWord()));
+  if (statement->CALL()) return out.push_back(with_words(lower_call(statement), statement->lineWord()));
+  if (statement->READ()) return out.push_back(lower_read(statement));
+  if (statement->BSTART() || statement->BSTOP()) return out.push_back(ir::make_stmt(span, ir::StepBlock{statement->BSTART() != nullptr}));
+  if (lower_flags_and_cycles(statement, out)) return;
   if (statement->DWELL()) return out.push_back(ir::make_stmt(span, ir::Dwell{lower_data(statement->data(0))}));
   if (statement->DELAY()) return out.push_back(ir::make_stmt(span, ir::Delay{lower_data(statement->data(0))}));
   if (statement->PSET()) return lower_pset(statement, out);
@@ -161,7 +169,21 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
     arguments.push_back(nullptr);
     return add_control(verb, span, std::move(arguments), out);
   }
+  if (statement->PREAD() || statement->VREAD() || statement->DREAD() || statement->FREAD() || statement->TREAD()) return lower_axis_query(statement, out);
   not_supported(span, lower_case(text_of(statement->start)));
+}
+
+/// pread, vread(X,Y): axis values of the coordinate system to D variables.
+void Lowering::lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out) {
+  using Verb = ir::ControlVerb;
+  const Verb verb = statement->PREAD() ? Verb::kPread : statement->VREAD() ? Verb::kVread : statement->DREAD() ? Verb::kDread : statement->FREAD() ? Verb::kFread : Verb::kTread;
+  const source::Span span = span_of(statement);
+  std::vector<ir::ExprPtr> arguments;
+  arguments.push_back(nullptr);
+  bool centres = false;
+  arguments.push_back(statement->axisList() ? ir::make_number(axis_mask(statement->axisList(), &centres), span) : nullptr);
+  if (centres) diagnostics_.error("PM2009", span, "R is no axis");
+  add_control(verb, span, std::move(arguments), out);
 }
 
 ir::StmtPtr Lowering::lower_jump(P::SimpleStatementContext* statement) {

@@ -30,6 +30,7 @@ class Lowering {
   ir::ExprPtr lower_element(P::ReferenceContext* reference);
   ir::ExprPtr lower_number(antlr4::Token* token);
   std::vector<ir::ExprPtr> lower_arguments(P::ArgumentsContext* arguments);
+  ir::ExprPtr lower_argument(P::ArgumentContext* argument);
   std::optional<std::int64_t> whole_number(antlr4::Token* token, std::int64_t most);
   double number_value(const antlr4::Token& token) const;
 
@@ -47,6 +48,7 @@ class Lowering {
   void lower_declaration(P::DeclarationContext* declaration, ir::Body& out);
   ir::StmtPtr lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition);
   void lower_label(P::LabelContext* label, ir::Body& out);
+  void lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out);
 
   // motion (lower_motion.cpp)
   void lower_motion_line(P::MotionLineContext* line, ir::Body& out);
@@ -59,6 +61,16 @@ class Lowering {
   std::uint32_t axis_mask(P::AxisListContext* list, bool* centres);
   int axis_index(antlr4::Token* token);
 
+  // lines of words (lower_lines.cpp)
+  void lower_code_line(P::CodeLineContext* line, ir::Body& out);
+  ir::LineWord lower_line_word(P::LineWordContext* word);
+  /// The statement with the words behind it; the statement itself where there are none.
+  ir::StmtPtr with_words(ir::StmtPtr statement, const std::vector<P::LineWordContext*>& words);
+  ir::StmtPtr lower_move_with_words(P::MoveContext* move);
+  bool lower_flags_and_cycles(P::SimpleStatementContext* statement, ir::Body& out);
+  ir::StmtPtr lower_read(P::SimpleStatementContext* statement);
+  void check_word_count(const std::vector<ir::LineWord>& words, source::Span span);
+
   // programs, motors, coordinate systems (lower_control.cpp)
   void lower_program_control(P::ProgramControlContext* control, ir::Body& out);
   /// Parts of a jog command; distance and trigger may be missing.
@@ -67,6 +79,7 @@ class Lowering {
   std::optional<ir::ControlVerb> jog_verb(const Jog& jog);
   void add_jogs(const Jog& jog, std::vector<ir::ExprPtr> motors, ir::Body& out);
   void lower_start(P::ProgramControlContext* control, ir::Body& out);
+  void lower_text_out(P::ProgramControlContext* control, ir::Body& out);
   void lower_pset(P::SimpleStatementContext* statement, ir::Body& out);
   std::vector<ir::ExprPtr> lower_number_list(P::NumberListContext* list);
   std::vector<ir::ExprPtr> lower_plc_list(P::PlcListContext* list);
@@ -84,6 +97,7 @@ class Lowering {
   void lower_address(P::OnlineContext* online, ir::Body& out);
   void lower_axis_definition(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_command(P::OnlineContext* online, ir::Body& out);
+  void lower_pointer_query(P::OnlineContext* online, ir::Body& out);
   void lower_command(std::string_view word, source::Span span, ir::Body& out);
   void lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out);
   void lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out);

@@ -78,7 +78,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     const auto stops = [&] {
       const std::size_t next = parser.getCurrentToken()->getType();
       const bool new_line = parser.getTokenStream()->index() > 0 && parser.getCurrentToken()->getLine() != parser.getTokenStream()->LT(-1)->getLine();
-      return next == Token::EOF || next == Parser::CLOSE || next == Parser::OPEN || next == Parser::SEMICOLON || next == Parser::RIGHT_BRACE || new_line;
+      return next == Token::EOF || next == Parser::CLOSE || next == Parser::OPEN || next == Parser::SEMICOLON || next == Parser::RIGHT_BRACE || next == Parser::LINE_END || new_line;
     };
     if (consume_first && parser.getCurrentToken()->getType() != Token::EOF) take();
     while (!stops()) take();
@@ -99,6 +99,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
 
   void report_unexpected_begin(antlr4::Parser& parser) {
     const auto* next = parser.getCurrentToken();
+    if (next->getType() == Parser::LINE_END) return;  // of a statement that was wrong
     if (next->getType() == Parser::RIGHT_BRACE && phantom_braces_ > 0) {
       --phantom_braces_;
       return;
@@ -108,7 +109,15 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     reported_index_ = index;
     if (next->getType() == Parser::RIGHT_BRACE) diagnostics_.error("PM2003", tree_.span_of(*next), "this } closes nothing; remove it, or add the missing {");
     else if (next->getType() == Parser::ELSE) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
-    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}", quoted(*next)));
+    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}{}", quoted(*next), hint_for_part_programs(tree_.text_of(*next))));
+  }
+
+  /// Lines of CNC part programs that the controller does not read.
+  static std::string_view hint_for_part_programs(std::string_view begin) {
+    if (begin == "%") return "; the % lines at the ends of a part program file are to be taken out";
+    if (begin == "(") return "; comments of part programs stand behind // here";
+    if (begin == "/") return "; a line that can be skipped begins with cskip and the number of its flag";
+    return {};
   }
 
   void describe(antlr4::Parser& parser, const antlr4::RecognitionException& error) {
@@ -162,6 +171,10 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     for (const std::string& name : names_.global) candidates.push_back(name);
     for (const std::string& name : names_.local) candidates.push_back(name);
     const std::size_t letters = static_cast<std::size_t>(std::find_if(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; }) - word.begin());
+    if (letters == 1 && word.size() > 1 && (word[0] == 'O' || word[0] == 'o')) {
+      diagnostics_.error("PM2050", tree_.span_of(token), fmt::format("'{}' is the number of a part program; here it stands in open prog {}, so take this line out", word, word.substr(1)));
+      return;
+    }
     const bool looks_like_axis = letters <= 2 && letters < word.size();
     if (looks_like_axis) {
       diagnostics_.error("PM2009", tree_.span_of(token), fmt::format("'{}' is no axis; the axes are A B C U V W X Y Z and AA to HH, LL to ZZ", word.substr(0, letters)));

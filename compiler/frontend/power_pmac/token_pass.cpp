@@ -1,10 +1,12 @@
 // What lines mean, told to the parser by tokens. The lexer's tokens go through this pass once:
 //   - JOIN is put between the words of one motion line (ta25 F200 X5 Y6), so that a word on the next line begins a statement;
+//   - every word behind a code letter or call on its line becomes LINE_WORD (G83 X1 P2, call 500 X1 Y2), so do P, Q and L behind axis words;
+//   - LINE_END is put behind a line with cexec or cskip, which act on the rest of their line;
 //   - C, I and R become AXIS, VECTOR and RADIUS where they are words of a move and not variables, M and D become CODE likewise;
 //     what they are shows by the assignment operator behind their number;
 //   - the words of normal and pset get types of their own;
 //   - an operator that begins a line, outside parentheses and not after another operator, is no binary operator: & addresses a
-//     coordinate system, < > % are commands, everything else cannot stand there.
+//     coordinate system, < > % are commands, everything else cannot stand there; nor can a parenthesis, except behind if and its kind.
 #include "compiler/frontend/power_pmac/syntax_tree.h"
 
 namespace pmac::compiler::power_pmac {
@@ -48,30 +50,90 @@ class TokenPass {
   }
 
  private:
-  enum class Group { kNone, kMotion, kNormal, kMove, kPset };
+  enum class Group { kNone, kMotion, kNormal, kMove, kPset, kCall, kCode };
 
   void take() {
     const std::size_t type = in_type_ = in_[at_]->getType();
     const bool new_line = in_[at_]->getLine() != before_line_;
+    end_line(type, new_line);
     if (type == T::OPEN) in_buffer_ = true;
     if (type == T::CLOSE) in_buffer_ = false;
+    if (type == T::LEFT_BRACE) ++braces_;
+    if (type == T::RIGHT_BRACE) --braces_;
+    if (type == T::OPEN || type == T::CLOSE) braces_ = 0;
     if (type == T::SEMICOLON || type == T::LEFT_BRACE || type == T::RIGHT_BRACE || type == T::OPEN || type == T::CLOSE) depth_ = 0;
     if (new_line && depth_ == 0) group_ = Group::kNone;
     if (depth_ == 0) take_outside(type, new_line);
-    if (type == T::LEFT || type == T::LEFT_BRACKET) ++depth_;
+    const bool is_other = in_[at_]->getType() == T::OTHER;
+    if (!is_other && (type == T::LEFT || type == T::LEFT_BRACKET)) ++depth_;
     if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && depth_ > 0) --depth_;
+  }
+
+  /// Puts LINE_END where the line of a cexec or cskip ends: at the line's end, outside of braces that it has opened.
+  void end_line(std::size_t type, bool new_line) {
+    if (open_lines_ == 0) return;
+    const bool line_ends = new_line && depth_ == 0 && !operand_wanted_ && braces_ <= line_braces_;
+    const bool block_ends = type == T::RIGHT_BRACE && braces_ <= line_braces_;
+    if (!line_ends && !block_ends && type != T::CLOSE && type != T::OPEN && type != antlr4::Token::EOF) return;
+    for (; open_lines_ > 0; --open_lines_) {
+      auto end = std::make_unique<antlr4::CommonToken>(out_.back().get());
+      end->setType(T::LINE_END);
+      out_.push_back(std::move(end));
+    }
   }
 
   void take_outside(std::size_t type, bool new_line) {
     const bool behind_operator = operand_wanted_;
     if (new_line && !behind_operator && is_binary_operator(type)) return set_type(type_at_line_start(type));
+    const bool condition_follows = before_ == T::IF || before_ == T::WHILE || before_ == T::SWITCH;
+    if (new_line && in_buffer_ && type == T::LEFT && !behind_operator && !condition_follows) return set_type(T::OTHER);
     if (!in_buffer_ && type == T::AMPERSAND && addresses_coord()) return set_type(T::COORD);
     if (!in_buffer_ || behind_operator) return;
+    if (begins_line_word(type)) return take_line_word();
     if (is_move_word(type)) return take_move_word(type);
     if (is_motion_keyword(type)) return take_motion_keyword(type);
-    if ((type == T::LETTER_M || type == T::LETTER_D) && !assignment_follows()) set_type(T::CODE);
-    if (type == T::PSET) group_ = Group::kPset;
-    else if (!is_part_of_word(type)) group_ = Group::kNone;
+    const bool is_code = type == T::CODE || ((type == T::LETTER_M || type == T::LETTER_D) && !assignment_follows());
+    if (is_code) set_type(T::CODE);
+    if (type == T::CEXEC || type == T::CSKIP) begin_conditional_line();
+    group_ = group_behind(type, is_code);
+  }
+
+  Group group_behind(std::size_t type, bool is_code) const {
+    if (is_code) return Group::kCode;
+    if (type == T::PSET) return Group::kPset;
+    if (type == T::CALL || type == T::GOSUB || type == T::CALLSUB || type == T::CCALL || type == T::CDEF) return Group::kCall;
+    const bool names_call = group_ == Group::kCall && (type == T::NAME || type == T::DOT || type == T::MEMBER);
+    return names_call || is_part_of_word(type) ? group_ : Group::kNone;
+  }
+
+  void begin_conditional_line() {
+    if (open_lines_ == 0) line_braces_ = braces_;
+    ++open_lines_;
+  }
+
+  static bool is_letter(std::size_t type) {
+    switch (type) {
+      case T::AXIS: case T::VECTOR: case T::VAR: case T::CODE: case T::LETTER: case T::LETTER_C: case T::LETTER_D: case T::LETTER_F: case T::LETTER_I:
+      case T::LETTER_M: case T::LETTER_R: return true;
+      default: return false;
+    }
+  }
+
+  /// A letter with its number behind a code letter or a call, or one that is no axis behind axis words.
+  bool begins_line_word(std::size_t type) const {
+    if (!is_letter(type) || is_letter(before_)) return false;
+    const bool in_line = group_ == Group::kCode || group_ == Group::kCall;
+    const bool for_cycle = group_ == Group::kMove && (type == T::VAR || type == T::LETTER);
+    if ((!in_line && !for_cycle) || at_ + 1 >= in_.size()) return false;
+    const std::size_t next = in_[at_ + 1]->getType();
+    const bool value_follows = next == T::NUMBER || next == T::LEFT || next == T::PLUS || next == T::MINUS;
+    return value_follows && !assignment_follows();
+  }
+
+  void take_line_word() {
+    set_type(T::LINE_WORD);
+    put_join();
+    group_ = Group::kCode;
   }
 
   /// On line, `P1=5 &2` addresses a coordinate system; `P1=5&2` and `P1=5 & 2` are a bitwise and.
@@ -107,7 +169,7 @@ class TokenPass {
 
   /// What stands inside a word: its number, sign, parentheses, and the : and ^ of a second number.
   bool is_part_of_word(std::size_t type) const {
-    if (type == T::COLON) return group_ == Group::kMove;
+    if (type == T::COLON) return group_ == Group::kMove || group_ == Group::kCode;
     return type == T::NUMBER || type == T::PLUS || type == T::MINUS || type == T::LEFT || type == T::RIGHT || type == caret();
   }
 
@@ -196,6 +258,9 @@ class TokenPass {
   int depth_ = 0;
   bool operand_wanted_ = false;
   bool in_buffer_ = false;
+  int braces_ = 0;               // open blocks
+  int open_lines_ = 0;           // cexec and cskip of the line at hand
+  int line_braces_ = 0;          // open blocks where the first of them stands
   Group group_ = Group::kNone;
 };
 

@@ -95,6 +95,7 @@ WordLexer::WordLexer(antlr4::ANTLRInputStream* input, std::string_view text, Dec
 std::unique_ptr<antlr4::Token> WordLexer::nextToken() {
   std::unique_ptr<antlr4::Token> next = PowerPmacLexer::nextToken();
   std::size_t kind = next->getType();
+  line_of_word_ = next->getLine();
   if (line_is_buffered_ && next->getLine() != buffered_line_) line_is_buffered_ = false;
   if (axis_definition_ && next->getLine() != axis_line_) axis_definition_ = false;
   if (kind == T::WORD) {
@@ -177,8 +178,11 @@ std::size_t WordLexer::type_of_run(std::string_view run, bool digit_follows, std
   const std::size_t next = std::min(text_.find_first_not_of(" \t", end), text_.size());
   const bool value_follows = digit_follows || (next < text_.size() && text_[next] == '(');
   if (!in_buffer_ && !line_is_buffered_) return online_type(run, value_follows);
-  const std::size_t keyword = find(buffer_keywords(), run);
-  return keyword ? keyword : letter_type(run);
+  if (const std::size_t keyword = find(buffer_keywords(), run)) return keyword;
+  const bool is_plain_letter = run.size() == 1 && (lower(run) == "e" || lower(run) == "o");
+  const bool is_word = is_plain_letter && code_line_ == line_of_word_ && (value_follows || (next < text_.size() && (text_[next] == '-' || text_[next] == '.')));
+  if (is_word) return T::LETTER;
+  return letter_type(run);
 }
 
 /// XP1: refused by the parser, with the remedy X(P1).
@@ -266,6 +270,7 @@ void WordLexer::follow_mode(std::size_t kind, std::size_t line) {
 void WordLexer::follow(std::size_t kind, std::size_t line) {
   follow_declaration(kind, line);
   follow_mode(kind, line);
+  if (kind == T::CODE || kind == T::LETTER_M || kind == T::LETTER_D || kind == T::CALL || kind == T::READ) code_line_ = line;
   last_[2] = last_[1];
   last_[1] = last_[0];
   last_[0] = kind;
@@ -294,6 +299,7 @@ std::string describe_token(std::size_t type) {
     case T::AXIS: case T::LETTER_C: return "an axis";
     case T::STRING: return "a text in quotation marks";
     case T::VAR: case T::LETTER_M: return "a variable";
+    case T::LINE_END: return "the end of the line";
     case antlr4::Token::EOF: return "the end of the file";
     default: return "'" + lower(vocabulary.getSymbolicName(type)) + "'";
   }

@@ -60,6 +60,8 @@ class WordLexer : public grammar::PowerPmacLexer {
   std::size_t last_[3] = {0, 0, 0}; // types of the tokens before, last one first
   std::size_t last_end_ = 0;        // offset behind the token before
   std::size_t last_line_ = 0;
+  std::size_t line_of_word_ = 0;    // of the word that is being classified
+  std::size_t code_line_ = 0;       // line of the last code letter or call: E and O are letters behind it
   std::size_t split_end_ = 0;       // words that begin before this offset are the rest of a split word
   bool last_number_is_zero_ = false;
 };

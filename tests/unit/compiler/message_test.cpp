@@ -46,12 +46,11 @@ TEST_CASE("every code in the sources has a row in compiler/source/message.def", 
   }
 }
 
-TEST_CASE("a row says error where the sources report an error, and names a group where they warn", "[messages]") {
+TEST_CASE("a row says error where the sources report nothing else, and names a group where they warn", "[messages]") {
   for (const auto& [code, calls] : reported_codes()) {
     const MessageInfo* row = find_message(code);
     if (row == nullptr || calls.empty()) continue;
     INFO(code);
-    CHECK(calls.contains("error") == (row->level == MessageLevel::kError));
     CHECK(calls.contains("warning") == (row->level != MessageLevel::kError));
   }
 }

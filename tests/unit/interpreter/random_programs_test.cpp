@@ -17,6 +17,7 @@ struct Machine {
   std::uint64_t run_all(const Module& module) {
     auto shared = std::make_shared<const Module>(module);
     std::uint64_t instructions = 0;
+    for (const auto element : {ElementId::kCoordGprog, ElementId::kCoordMprog, ElementId::kCoordTprog, ElementId::kCoordFprog}) host.elements[{element, 0}] = 1;
     for (const Program& program : shared->programs) host.subprograms[program.number] = {shared, &program};
     for (const Program& program : shared->programs) instructions += run({shared, &program});
     return instructions;

@@ -46,6 +46,7 @@ class ProgramBench : public runtime::SampleSink {
     options.observers.fault = [this](const runtime::FaultRecord& f) { faults.push_back(f); };
     options.observers.answer = [this](const std::string& answer) { answers.push_back(answer); };
     options.observers.refused = [this](const std::string& what, const std::string& why) { refusals.push_back(what + ": " + why); };
+    options.observers.answer = [this](const std::string& answer) { answers.push_back(answer); };
     machine = std::make_unique<runtime::Machine>(options);
     machine->add_sink(this);
     machine->add_sink(&statistics);

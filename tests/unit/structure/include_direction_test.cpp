@@ -19,7 +19,8 @@ const std::vector<Rule>& rules() {
   static const std::vector<Rule> table = {
       {"compiler/source/", {"compiler/source/"}, {"fmt/", "nlohmann/"}},
       {"compiler/bytecode/", {"compiler/bytecode/", "compiler/source/"}, {"flatbuffers/", "object_file_generated.h", "fmt/"}},
-      {"compiler/frontend/", {"compiler/"}, {"fmt/", "antlr4-runtime", "atn/", "PowerPmac", "Acr1000", "pugixml.hpp"}},
+      {"compiler/frontend/", {"compiler/"}, {"fmt/", "antlr4-runtime", "atn/", "PowerPmac", "Acr1000"}},
+      {"compiler/project/", {"compiler/project/", "compiler/source/", "compiler/compiler.h"}, {"fmt/", "pugixml.hpp"}},
       {"compiler/tool/", {"compiler/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h"}},
       {"compiler/", {"compiler/"}, {"fmt/"}},
       {"kinematics/", {"kinematics/"}, {"Eigen/"}},
