@@ -118,3 +118,53 @@ TEST_CASE("errors behind the limit are counted; 0 is no limit", "[messages]") {
   CHECK(contains(w.run("pmacc", "--error-limit 10 a.pmc").err, "140 more error(s) are not shown\n150 error(s)"));
   CHECK_FALSE(contains(w.run("pmacc", "--error-limit 0 a.pmc").err, "more error"));
 }
+
+TEST_CASE("a program of Turbo PMAC is rewritten in the braces, operators and comments of Power PMAC", "[fix]") {
+  const Workspace w;
+  w.write("old.pmc",
+          "; the homing of one stage\n"
+          "; by hand\n"
+          "OPEN PLC 5 CLEAR\n"
+          "IF (P1=5)\n"
+          "AND (P2=6 OR P3=7)\n"
+          "  P2=1 ; one\n"
+          "ELSE\n"
+          "  WHILE (P1<3)\n"
+          "    P1=P1+1\n"
+          "  ENDW\n"
+          "ENDIF\n"
+          "DISPLC5\n"
+          "CLOSE\n");
+  const ToolResult r = w.run("pmacc", "--fix old.pmc");
+  INFO(r.err);
+  CHECK(r.code == 0);
+  const std::string mended =
+      "// the homing of one stage\n"
+      "// by hand\n"
+      "OPEN PLC 5 \n"
+      "IF ((P1==5)\n"
+      "&& (P2==6 || P3==7)) {\n"
+      "  P2=1 // one\n"
+      "} else {\n"
+      "  WHILE (P1<3) {\n"
+      "    P1=P1+1\n"
+      "  }\n"
+      "}\n"
+      "disable plc 5\n"
+      "CLOSE\n";
+  CHECK(w.read("old.pmc") == mended);
+  CHECK(w.run("pmacc", "--fix old.pmc").err.empty());
+  CHECK(w.read("old.pmc") == mended);
+}
+
+TEST_CASE("long lists of one Turbo PMAC spelling are cut short for people, and whole for tools", "[messages]") {
+  const Workspace w;
+  std::string text = "open plc 1\n";
+  for (int i = 0; i < 20; ++i) text += "if (P1 == 1)\nP2=1\nendif\n";
+  w.write("old.pmc", text + "close\n");
+  const ToolResult r = w.run("pmacc", "--check old.pmc");
+  CHECK(contains(r.err, "old.pmc: note: 18 more [PM2021] (Turbo PMAC block) in line 10, 13, "));
+  CHECK(contains(r.err, "20 error(s)"));
+  CHECK_FALSE(contains(w.run("pmacc", "--check --repeat-limit=0 old.pmc").err, "more [PM2021]"));
+  CHECK(nlohmann::json::parse(w.run("pmacc", "--diagnostics-format=json old.pmc").err)["diagnostics"].size() == 20);
+}
