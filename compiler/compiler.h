@@ -71,7 +71,8 @@ class Session {
 std::string emit_tokens(Session& session, const InputFile& file);
 std::string emit_tree(Session& session, const InputFile& file);
 std::string emit_ir(Session& session, const std::vector<InputFile>& files);
-std::string emit_symbols(const bytecode::Module& module);
+/// Also where there are errors: of what could be declared.
+std::string emit_symbols(Session& session, const std::vector<InputFile>& files);
 std::string emit_elements();
 
 }  // namespace pmac::compiler

@@ -8,21 +8,6 @@
 namespace pmac::compiler {
 namespace {
 
-std::string_view symbol_kind_name(bytecode::SymbolKind kind) {
-  constexpr std::string_view kNames[] = {"global", "csglobal", "ptr", "prog", "plc", "subprog", "macro"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
-std::string symbol_place(const bytecode::Symbol& symbol) {
-  switch (symbol.kind) {
-    case bytecode::SymbolKind::kGlobal: return fmt::format("P{}", symbol.number);
-    case bytecode::SymbolKind::kCsGlobal: return fmt::format("Q{}", symbol.number);
-    case bytecode::SymbolKind::kPointer: return fmt::format("M{}", symbol.number);
-    case bytecode::SymbolKind::kMacro: return symbol.text;
-    default: return fmt::format("{}", symbol.number);
-  }
-}
-
 std::string element_indices(const bytecode::ElementInfo& info) {
   std::string text;
   for (int i = 0; i < info.index_count(); ++i) text += fmt::format("{}0..{}", i ? " " : "", info.index_counts[i] - 1);
@@ -42,13 +27,6 @@ std::string emit_tree(Session& session, const InputFile& file) { return session.
 std::string emit_ir(Session& session, const std::vector<InputFile>& files) {
   std::string out;
   for (const ir::Unit& unit : session.state().analyse(files, false)) out += ir::print(unit);
-  return out;
-}
-
-std::string emit_symbols(const bytecode::Module& module) {
-  std::string out;
-  for (const bytecode::Symbol& symbol : module.symbols)
-    out += fmt::format("{} {} {}{}\n", symbol_kind_name(symbol.kind), symbol.name, symbol_place(symbol), symbol.size ? fmt::format(" size {}", symbol.size) : "");
   return out;
 }
 

@@ -1,13 +1,16 @@
 // pmacc: the compiler as a tool. Exit codes: 0 ok, 1 errors in the user's program, 2 usage or unreadable file, 70 internal error.
 #include <exception>
 #include <iostream>
+#include <string_view>
 
 #include "compiler/tool/commands.h"
+#include "compiler/tool/fmt.h"
 #include "compiler/tool/options.h"
 
 int main(int argc, char** argv) {
   using namespace pmac;
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "fmt") return pmacc::run_fmt(argc - 1, argv + 1);
     std::optional<int> exit_code;
     const pmacc::Arguments arguments = pmacc::parse_command_line(argc, argv, exit_code);
     return exit_code ? *exit_code : pmacc::run(arguments);

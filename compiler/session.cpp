@@ -44,6 +44,7 @@ std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& file
   std::vector<ir::Unit> units;
   for (const InputFile& file : files) units.push_back(frontend.read(file.name, file.text));
   for (const std::string& name : frontend.known_names()) project.lexed_names.insert(name);
+  for (const ir::Unit& unit : units) sema::reserve_numbers(unit, project);
   for (ir::Unit& unit : units) sema::declare(unit, project, diagnostics);
   const sema::Settings settings{online};
   for (ir::Unit& unit : units) sema::check(unit, project, settings, diagnostics);

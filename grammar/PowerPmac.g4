@@ -3,18 +3,20 @@
 // The rules describe text after the preprocessor. Words are recognised by the class WordLexer (compiler/frontend/power_pmac), which
 // cuts glued words such as ta500ts0 or X1.5Y4 and knows the declared names: the lexer below only finds where a word begins.
 // A line end is white space. Where lines matter, the pass of token_pass.cpp has told the parser by the tokens: JOIN stands between
-// words of one line, LINE_END behind a line that cexec or cskip may leave out, words behind a code letter or call are LINE_WORD, axis words have types of their own (C90 is AXIS, C6 = 1 begins with LETTER_C), and an operator that
+// words of one line, LINE_END behind a line that cexec or cskip may leave out or that cx executes, words behind a code letter or call are LINE_WORD, axis words have types of their own (C90 is AXIS, C6 = 1 begins with LETTER_C), and an operator that
 // begins a line is no binary one. So every decision but a few of on-line commands is made by one or two tokens.
 grammar PowerPmac;
 
 @parser::members {
 /// The next token is on the line of the token before it.
 bool sameLine() { return _input->LT(1)->getLine() == _input->LT(-1)->getLine(); }
+/// An else of that type comes next, or behind one semicolon.
+bool elseFollows(size_t type) { return _input->LA(_input->LA(1) == SEMICOLON ? 2 : 1) == type; }
 }
 
 tokens {
   // what a WORD can turn out to be
-  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
+  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, ELSE_IF, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
   // keywords of both tables
   OPEN, CLOSE, PROG, PLC, SUBPROG, FORWARD, INVERSE, ROTARY, GLOBAL, CSGLOBAL, PTR, LOCAL, SUB,
   ABORT, ADISABLE, BEGIN, CMD, DDISABLE, DISABLE, DKILL, ENABLE, HOLD, HOME, HOMEZ, JOG, JOGRET, KILL, LH, PAUSE, PMATCH, RESUME,
@@ -57,6 +59,7 @@ statement
   | motionLine
   | codeLine
   | assignment
+  | callStatement
   | simpleStatement
   | onlineInBuffer
   ;
@@ -64,8 +67,13 @@ statement
 block : '{' (statement | ';')* '}' ;
 body : statement | ';' ;
 
-ifStatement : IF '(' condition ')' body elseIf* (';'? ELSE body)? ;
-elseIf : ';'? ELSE IF '(' condition ')' body ;
+ifStatement : IF '(' condition ')' body elsePart ;
+/// An else belongs to the nearest if. ELSE_IF is an else that an if follows.
+elsePart
+  : {elseFollows(ELSE_IF)}? ';'? ELSE_IF IF '(' condition ')' body elsePart
+  | {elseFollows(ELSE)}? ';'? ELSE body
+  | {!elseFollows(ELSE) && !elseFollows(ELSE_IF)}?
+  ;
 whileStatement : WHILE '(' condition ')' body ;
 doStatement : DO body ';'? WHILE '(' condition ')' ;
 switchStatement : SWITCH '(' expression ')' '{' (caseLabel | statement | ';')* '}' ;
@@ -146,8 +154,10 @@ assignment
   : lvalue operation=(ASSIGN | '+=' | '-=' | '*=' | '/=' | '%=' | '&=' | '|=' | '^=' | '>>=' | '<<='
            | SYNC_ASSIGN | '+==' | '-==' | '*==' | '/==' | '&==' | '|==' | '^==') {sameLine()}? expression (',' expression)*
   | lvalue step=('++' | '--' | '++=' | SYNC_DECREMENT)
-  | call=NAME arguments
   ;
+
+/// A function that is called for what it stores: strcpy(&P100, "on").
+callStatement : NAME arguments ;
 
 lvalue : variable | reference ;
 variable : (VAR | LETTER_C | LETTER_D | LETTER_I | LETTER_M | LETTER_R) (NUMBER | '(' expression ')') ;
@@ -222,7 +232,7 @@ online
   | DEFINE LOOKAHEAD NUMBER (',' NUMBER)?
   | DELETE LOOKAHEAD
   | CLEAR ({sameLine()}? kind=(PROG | PLC | SUBPROG) bufferName)?
-  | CX ({sameLine()}? (statement | ';'))*
+  | CX (statement | ';')* LINE_END
   | COMMAND
   | ON_B ({sameLine()}? programName)?
   | ON_J onlineJog

@@ -156,7 +156,7 @@ class MachineHost : public Host {
   Flow enable_gathering(Thread& thread, double value);
   void define_axis(Thread& thread, const bytecode::AxisDefinition& definition);
   void define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition);
-  void install(const bytecode::Program& program);
+  void install(Thread& thread, const bytecode::Program& program);
 
   Machine::State& s_;
 };
@@ -267,7 +267,10 @@ Flow MachineHost::online(Thread& thread, const bytecode::Module& module, const b
       return Flow::kContinue;
     case Opcode::kDefineAxis: define_axis(thread, module.axis_definitions[index]); return Flow::kContinue;
     case Opcode::kDefinePointer: define_pointer(module, module.pointer_definitions[index]); return Flow::kContinue;
-    case Opcode::kInstallProgram: install(module.programs[index]); return Flow::kContinue;
+    case Opcode::kInstallProgram: install(thread, module.programs[index]); return Flow::kContinue;
+    case Opcode::kExecuteProgram:
+      if (const std::string refusal = s_.coord(thread.coord).execute({s_.loading, &module.programs[index]}, s_.now_ms); !refusal.empty()) s_.refuse("cx", refusal);
+      return Flow::kContinue;
     case Opcode::kReport: s_.answer(fmt::format("{}={}", module.strings[index], r[instruction.a])); return Flow::kContinue;
     default: return fault(thread, FaultKind::kNotSimulated, "this command is not simulated");
   }
@@ -292,8 +295,12 @@ void MachineHost::define_pointer(const bytecode::Module& module, const bytecode:
   for (int m = definition.first_m; m <= definition.last_m; ++m) s_.pointers.define(m, definition, element);
 }
 
-void MachineHost::install(const bytecode::Program& program) {
+void MachineHost::install(Thread& thread, const bytecode::Program& program) {
   const ProgramHandle handle{s_.loading, &program};
+  if (program.kind == bytecode::ProgramKind::kRotary) {
+    if (const std::string refusal = s_.coord(thread.coord).append_rotary(handle, s_.now_ms); !refusal.empty()) s_.refuse("open rotary", refusal);
+    return;
+  }
   if (s_.executes(program.kind, program.number))
     return s_.refuse(fmt::format("open {} {}", program_kind_name(program.kind), program.number),
                      "error #38: PROGRAM RUNNING: abort or disable it first");

@@ -135,7 +135,7 @@ std::string OperandText::text() const {
   switch (opcode_info(in_.op).format) {
     case OperandFormat::kNone: return {};
     case OperandFormat::kReg: return reg(in_.a);
-    case OperandFormat::kReg3: return registers(in_.a, 3);
+    case OperandFormat::kReg3: return registers(in_.a, 3) + (in_.imm == 1 ? ", second" : "");
     case OperandFormat::kRegReg: return a_and(reg(in_.b()));
     case OperandFormat::kRegRegReg: return a_and(reg(in_.b()) + ", " + reg(in_.c()));
     case OperandFormat::kRegConst: return a_and(entry(module_.constants, number_text));

@@ -133,7 +133,7 @@ std::string InstructionCheck::operands() const {
   switch (opcode_info(in_.op).format) {
     case OperandFormat::kNone: return {};
     case OperandFormat::kReg: return registers(in_.a);
-    case OperandFormat::kReg3: return registers(in_.a, 3);
+    case OperandFormat::kReg3: return in_.imm == 0 || in_.imm == 1 ? registers(in_.a, 3) : "no such set of axes";
     case OperandFormat::kRegReg: return both(registers(in_.a), registers(in_.b()));
     case OperandFormat::kRegRegReg: return both(registers(in_.a), both(registers(in_.b()), registers(in_.c())));
     case OperandFormat::kRegConst: return both(registers(in_.a), index(module_.constants.size(), "constant"));

@@ -41,9 +41,12 @@ std::int32_t Tables::call_target(const bytecode::CallTarget& target) { return in
 
 bytecode::SourceLine Tables::line(const source::Span& span) {
   if (!span.valid()) return {};
-  const auto [at, fresh] = files_.emplace(span.file, static_cast<std::int32_t>(module_.files.size()));
-  if (fresh) module_.files.push_back(sources_.file(span.file).name);
-  const source::LineColumn place = sources_.line_column(span.file, span.begin);
+  const source::Place place = sources_.place(span);
+  auto at = files_.find(place.file);
+  if (at == files_.end()) {
+    at = files_.emplace(place.file, static_cast<std::int32_t>(module_.files.size())).first;
+    module_.files.emplace_back(place.file);
+  }
   return {at->second, place.line, place.column};
 }
 

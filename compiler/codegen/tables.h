@@ -28,7 +28,7 @@ class Tables {
   const source::SourceManager& sources_;
   std::unordered_map<std::uint64_t, std::int32_t> constants_;  // by bits: 0.0 and -0.0 differ
   std::map<std::string, std::int32_t> strings_, elements_;
-  std::map<std::int32_t, std::int32_t> files_;                  // of the source manager -> of the module
+  std::map<std::string, std::int32_t, std::less<>> files_;      // name as messages show it -> index in the module
 };
 
 }  // namespace pmac::compiler::codegen

@@ -278,13 +278,13 @@ void ProgramWriter::write(const ir::SetAbsInc& node, const source::Span&) {
 }
 
 void ProgramWriter::write(const ir::SetFrax& node, const source::Span&) {
-  emit_imm(Opcode::kSetFrax, node.secondary ? 1 : 0, static_cast<std::int32_t>(node.axes));
+  emit_imm(node.off ? Opcode::kClearFrax : Opcode::kSetFrax, node.secondary ? 1 : 0, static_cast<std::int32_t>(node.axes));
 }
 
 void ProgramWriter::write(const ir::SetNormal& node, const source::Span&) {
   const Register first = take(3);
   for (Register i = 0; i < 3; ++i) value_into(*node.vector[i], first + i);
-  emit_imm(Opcode::kSetNormal, first, 0);
+  emit_imm(Opcode::kSetNormal, first, node.second_set ? 1 : 0);
 }
 
 void ProgramWriter::write(const ir::Move& node, const source::Span&) {

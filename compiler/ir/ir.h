@@ -121,8 +121,10 @@ struct SetMode { MoveMode mode = MoveMode::kLinear; };
 struct SetParameter { MotionParameter parameter = MotionParameter::kTa; ExprPtr value; };
 /// abs, inc: axes is a mask; centres: R was in the list.
 struct SetAbsInc { bool absolute = true; std::uint32_t axes = 0; bool centres = false; };
-struct SetFrax { std::uint32_t axes = 0; bool secondary = false; };
-struct SetNormal { ExprPtr vector[3]; };
+/// off: the axes are no feed-rate axes any more; else they are the feed-rate axes.
+struct SetFrax { std::uint32_t axes = 0; bool secondary = false; bool off = false; };
+/// second_set: of the axes XX YY ZZ.
+struct SetNormal { ExprPtr vector[3]; bool second_set = false; };
 struct Word { WordKind kind = WordKind::kTarget; int index = 0; ExprPtr value; Span span; };
 struct Move { std::vector<Word> words; };
 struct Dwell { ExprPtr time_ms; };
@@ -141,7 +143,8 @@ struct Send { int port = 0; std::string text; std::vector<ExprPtr> values; };
 struct AddressCoord { ExprPtr number; };
 struct AddressMotor { ExprPtr number; };
 struct DefineAxis { bytecode::AxisDefinition definition; };
-struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; std::string name; Span name_span; int size = 0; };
+/// declaration: the whole of `ptr A->..., B->...` that it stands in.
+struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; std::string name; Span name_span; int size = 0; Span declaration; };
 struct GlobalDeclaration { VariableClass variable_class = VariableClass::kP; std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
 struct Globals { std::vector<GlobalDeclaration> names; };
 struct Report { ExprPtr value; std::string name; };
@@ -171,6 +174,7 @@ struct Buffer {
   bytecode::ProgramKind kind = bytecode::ProgramKind::kProg;
   std::int64_t number = -1;        // -1: to be assigned to its name, or the addressed coordinate system
   std::string name;
+  Span name_span;                  // of its name or number
   Span span;                       // of its open line
   Span close_span;
   std::vector<Parameter> parameters;

@@ -151,8 +151,8 @@ class StmtPrinter {
   void operator()(const SetMode& node) { line(fmt::format("mode {}", bytecode::move_mode_name(node.mode))); }
   void operator()(const SetParameter& node) { line(fmt::format("{} {}", bytecode::motion_parameter_name(node.parameter), print(*node.value))); }
   void operator()(const SetAbsInc& node) { line(fmt::format("{}{}{}", node.absolute ? "abs" : "inc", node.axes || !node.centres ? axis_list(node.axes) : "", node.centres ? " centres" : "")); }
-  void operator()(const SetFrax& node) { line(fmt::format("frax{}{}", node.secondary ? "2" : "", axis_list(node.axes))); }
-  void operator()(const SetNormal& node) { line(fmt::format("normal {} {} {}", print(*node.vector[0]), print(*node.vector[1]), print(*node.vector[2]))); }
+  void operator()(const SetFrax& node) { line(fmt::format("{}frax{}{}", node.off ? "no" : "", node.secondary ? "2" : "", axis_list(node.axes))); }
+  void operator()(const SetNormal& node) { line(fmt::format("normal {} {} {}{}", print(*node.vector[0]), print(*node.vector[1]), print(*node.vector[2]), node.second_set ? " second set" : "")); }
   void operator()(const Move& node) {
     std::string text = "move";
     for (const Word& word : node.words) text += print_word(word);

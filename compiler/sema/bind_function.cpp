@@ -32,7 +32,6 @@ bytecode::Function find_function(std::string_view name) {
 std::string_view reason_of_absence(std::string_view name) {
   const std::string wanted = lower(name);
   if (wanted == "dcopy" || wanted == "lrcopy" || wanted == "rlcopy") return "; copy with vcopy";
-  if (wanted == "tinit" || wanted == "tdet" || wanted == "tinv" || wanted == "tprop") return " yet";
   if (wanted.starts_with("ecat")) return "; there is no EtherCAT network in the simulation";
   return {};
 }
@@ -80,7 +79,8 @@ void Binder::bind_arguments(bytecode::Function function, std::vector<ir::ExprPtr
 void Binder::bind_argument(ir::Expr& argument, char letter, std::string_view function, std::size_t number) {
   switch (letter) {
     case 'n':
-    case 'N': return bind_value(argument);
+    case 'N':
+    case 't': return bind_value(argument);
     case 'f':
       if (!is_text(argument)) diagnostics_.error("PM3071", argument.span, fmt::format("argument {} of {} is a format in quotation marks", number, function));
       return;

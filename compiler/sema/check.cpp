@@ -7,6 +7,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "compiler/bytecode/module_text.h"
 #include "compiler/sema/binder.h"
 
 namespace pmac::compiler::sema {
@@ -34,9 +35,11 @@ void check_labels(const ir::Buffer& buffer, const std::vector<std::pair<std::int
     if (!fresh) diagnostics.error("PM3030", span, fmt::format("label N{} stands here twice", number)).notes.push_back({at->second, "the first one is here"});
   }
   for (const ir::Routine& routine : buffer.routines) known.emplace(routine.label, routine.span);
+  std::set<std::int64_t> missing;
   for (const auto& [number, span] : jumps) {
     if (known.contains(number)) continue;
-    diagnostics.error("PM3031", span, fmt::format("this buffer has no label N{}:", number)).notes.push_back({buffer.close_span, "it ends here"});
+    if (!missing.insert(number).second) continue;
+    diagnostics.error("PM3031", buffer.close_span, fmt::format("the label N{}: is missing in this buffer", number)).notes.push_back({span, "this goes to it"});
   }
 }
 
@@ -73,9 +76,18 @@ void Binder::bind(ir::Assign& node, const source::Span& span) {
   if (no_sync) diagnostics_.error("PM3024", span, "R and C variables cannot be assigned synchronously; write = instead of ==");
 }
 
-void Binder::bind(ir::AssignSeries& node, const source::Span&) {
+/// P1,10,2=5: every variable of the series must exist.
+void Binder::bind(ir::AssignSeries& node, const source::Span& span) {
   bind_target(*node.target);
   bind_value(*node.value);
+  const auto* first = std::get_if<ir::Variable>(&node.target->node);
+  if (!first) return;
+  if (first->index) return void(diagnostics_.error("PM3023", span, "a series of variables begins with a constant number"));
+  if (node.count < 1) return void(diagnostics_.error("PM3023", span, "a series has at least one variable"));
+  const std::int64_t last = first->number + (node.count - 1) * node.step;
+  const std::string letter = bytecode::variable_class_name(first->variable_class);
+  const int most = bytecode::variable_class_count(first->variable_class) - 1;
+  if (last > most) diagnostics_.error("PM3045", span, fmt::format("the series goes on to {0}{1}; the last one is {0}{2}", letter, last, most));
 }
 
 void Binder::bind(ir::If& node, const source::Span&) {
@@ -103,8 +115,13 @@ void Binder::bind(ir::DoWhile& node, const source::Span&) {
 void Binder::bind(ir::Switch& node, const source::Span&) {
   bind_value(*node.value);
   std::set<std::int64_t> seen;
+  bool has_default = false;
   for (ir::Case& label : node.cases) {
-    if (!label.value) continue;
+    if (!label.value) {
+      if (has_default) diagnostics_.error("PM3033", label.span, "this default stands here twice");
+      has_default = true;
+      continue;
+    }
     bind_value(*label.value);
     const auto value = ir::constant_value(*label.value);
     if (!value) diagnostics_.error("PM3032", label.span, "the value of a case is a constant");
@@ -163,8 +180,6 @@ void Binder::bind_routine_name(ir::Jump& node, const source::Span& span) {
     }
   }
   diagnostics_.error("PM3028", span, fmt::format("this buffer has no routine '{}'", node.name));
-  node.label = ir::make_number(0, span);
-  jumps_.clear();
 }
 
 void Binder::mark_references(std::vector<bool>& by_reference, std::vector<ir::ExprPtr>& arguments, const std::vector<ir::Parameter>& parameters, const source::Span& span, std::string_view name) {
@@ -376,8 +391,10 @@ void Binder::resolve_addressed(ir::Buffer& buffer) {
 void check(ir::Unit& unit, Project& project, const Settings& settings, source::Diagnostics& diagnostics) {
   Binder binder(project, settings, diagnostics);
   for (std::size_t i = 0; i < unit.load.size(); ++i) {
-    if (const auto* open = std::get_if<ir::OpenBuffer>(&unit.load[i]->node)) {
-      binder.bind_buffer(unit.buffers[open->buffer]);
+    const auto* open = std::get_if<ir::OpenBuffer>(&unit.load[i]->node);
+    const auto* at_once = std::get_if<ir::ExecuteAtOnce>(&unit.load[i]->node);
+    if (open || at_once) {
+      binder.bind_buffer(unit.buffers[open ? open->buffer : at_once->buffer]);
       continue;
     }
     binder.bind_statement(*unit.load[i]);

@@ -83,10 +83,13 @@ class Declarer {
 
 }  // namespace
 
-void declare(ir::Unit& unit, Project& project, source::Diagnostics& diagnostics) {
-  Declarer declarer(project, diagnostics);
+void reserve_numbers(const ir::Unit& unit, Project& project) {
   for (const ir::Buffer& buffer : unit.buffers)
     if (buffer.kind == ProgramKind::kPlc && buffer.name.empty()) project.names.use_plc_number(buffer.number);
+}
+
+void declare(ir::Unit& unit, Project& project, source::Diagnostics& diagnostics) {
+  Declarer declarer(project, diagnostics);
   for (ir::StmtPtr& statement : unit.load) {
     if (auto* globals = std::get_if<ir::Globals>(&statement->node)) declarer.declare_globals(*globals);
     if (auto* pointer = std::get_if<ir::DefinePointer>(&statement->node)) declarer.declare_pointer(*pointer);

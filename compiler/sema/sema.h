@@ -25,6 +25,9 @@ struct Project {
 
 struct Settings { bool online = false; };
 
+/// Notes the numbers of PLC programs that have no name; call for every unit before declare(), so that no name takes one of them.
+void reserve_numbers(const ir::Unit& unit, Project& project);
+
 /// Declares the global names and programs of a unit; call for every unit before check().
 void declare(ir::Unit& unit, Project& project, source::Diagnostics& diagnostics);
 

@@ -35,7 +35,8 @@ std::string include_stack(const SourceManager& sources, const Span& span) {
   if (!span.valid()) return text;
   Span from = sources.file(span.file).included_from;
   for (const char* lead = "In file included from "; from.valid(); from = sources.file(from.file).included_from) {
-    text += fmt::format("{}{}:{}:\n", lead, sources.file(from.file).name, sources.line_column(from.file, from.begin).line);
+    const Place place = sources.place(from);
+    text += fmt::format("{}{}:{}:\n", lead, place.file, place.line);
     lead = "                 from ";
   }
   return text;
@@ -54,13 +55,15 @@ std::string suffix_of(const Diagnostic& diagnostic) {
   return suffix;
 }
 
-std::string expansion_note(const SourceManager& sources, const Span& span, const Paint& paint) {
+/// The macros that the text came through, from the inside out.
+std::string expansion_notes(const SourceManager& sources, const Span& span, const Paint& paint) {
+  constexpr int kMaxNotes = 8;
   std::string text;
-  for (Span at = span; at.valid() && at.expansion >= 0;) {
-    const Expansion& expansion = sources.expansion(at.expansion);
+  int shown = 0;
+  for (std::int32_t index = span.expansion; index >= 0 && shown < kMaxNotes; index = sources.expansion(index).parent, ++shown) {
+    const Expansion& expansion = sources.expansion(index);
     text += message_line(sources, Severity::kNote, expansion.definition, fmt::format("in the expansion of macro '{}'", expansion.macro), "", paint);
     text += marked_lines(sources, expansion.definition, paint);
-    at = expansion.definition;
   }
   return text;
 }
@@ -91,8 +94,8 @@ std::string_view severity_name(Severity severity) {
 
 std::string place_of(const SourceManager& sources, const Span& span) {
   if (!span.valid()) return "<no source>";
-  const LineColumn at = sources.line_column(span.file, span.begin);
-  return fmt::format("{}:{}:{}", sources.file(span.file).name, at.line, at.column);
+  const Place at = sources.place(span);
+  return fmt::format("{}:{}:{}", at.file, at.line, at.column);
 }
 
 std::string format_text(const SourceManager& sources, const Diagnostic& diagnostic, bool color) {
@@ -101,7 +104,7 @@ std::string format_text(const SourceManager& sources, const Diagnostic& diagnost
   text += message_line(sources, diagnostic.severity, diagnostic.span, diagnostic.message, suffix_of(diagnostic), paint);
   text += marked_lines(sources, diagnostic.span, paint);
   if (diagnostic.fix) text += fix_line(sources, *diagnostic.fix);
-  text += expansion_note(sources, diagnostic.span, paint);
+  text += expansion_notes(sources, diagnostic.span, paint);
   for (const Note& note : diagnostic.notes) {
     text += message_line(sources, Severity::kNote, note.span, note.message, "", paint);
     text += marked_lines(sources, note.span, paint);

@@ -13,9 +13,10 @@ using nlohmann::json;
 
 json place_json(const SourceManager& sources, const Span& span) {
   if (!span.valid()) return json::object();
-  const LineColumn begin = sources.line_column(span.file, span.begin);
+  const Place begin = sources.place(span);
+  const LineColumn first = sources.line_column(span.file, span.begin);
   const LineColumn end = sources.line_column(span.file, span.end);
-  return {{"file", to_utf8(sources.file(span.file).name)}, {"line", begin.line}, {"column", begin.column}, {"end_line", end.line}, {"end_column", end.column}};
+  return {{"file", to_utf8(begin.file)}, {"line", begin.line}, {"column", begin.column}, {"end_line", begin.line + end.line - first.line}, {"end_column", end.column}};
 }
 
 json edit_json(const SourceManager& sources, const Span& span, const std::string& replacement) {
@@ -41,9 +42,9 @@ json include_json(const SourceManager& sources, const Span& span) {
 
 json expansion_json(const SourceManager& sources, const Span& span) {
   json list = json::array();
-  for (Span at = span; at.valid() && at.expansion >= 0; at = sources.expansion(at.expansion).definition) {
-    json entry = place_json(sources, sources.expansion(at.expansion).definition);
-    entry["macro"] = sources.expansion(at.expansion).macro;
+  for (std::int32_t index = span.expansion; index >= 0; index = sources.expansion(index).parent) {
+    json entry = place_json(sources, sources.expansion(index).definition);
+    entry["macro"] = sources.expansion(index).macro;
     list.push_back(std::move(entry));
   }
   return list;
@@ -84,11 +85,12 @@ std::string escaped(std::string_view text, bool property) {
 
 std::string github_place(const SourceManager& sources, const Span& span) {
   if (!span.valid()) return {};
-  const LineColumn begin = sources.line_column(span.file, span.begin);
+  const Place begin = sources.place(span);
+  const LineColumn first = sources.line_column(span.file, span.begin);
   const LineColumn end = sources.line_column(span.file, span.end);
-  std::string place = fmt::format("file={},line={},col={}", escaped(sources.file(span.file).name, true), begin.line, begin.column);
+  std::string place = fmt::format("file={},line={},col={}", escaped(begin.file, true), begin.line, begin.column);
   // columns of a range are known to the service only where it stays on one line
-  if (end.line > begin.line) place += fmt::format(",endLine={}", end.line);
+  if (end.line > first.line) place += fmt::format(",endLine={}", begin.line + end.line - first.line);
   else place += fmt::format(",endColumn={}", std::max(end.column, begin.column));
   return place + ",";
 }

@@ -59,8 +59,8 @@ ordered_json related_json(const SourceManager& sources, const Diagnostic& diagno
     list.push_back(std::move(location));
   };
   for (const Note& note : diagnostic.notes) add(note.span, note.message);
-  for (Span at = diagnostic.span; at.valid() && at.expansion >= 0; at = sources.expansion(at.expansion).definition)
-    add(sources.expansion(at.expansion).definition, fmt::format("in the expansion of macro '{}'", sources.expansion(at.expansion).macro));
+  for (std::int32_t index = diagnostic.span.expansion; index >= 0; index = sources.expansion(index).parent)
+    add(sources.expansion(index).definition, fmt::format("in the expansion of macro '{}'", sources.expansion(index).macro));
   if (diagnostic.span.valid())
     for (Span from = sources.file(diagnostic.span.file).included_from; from.valid(); from = sources.file(from.file).included_from) add(from, "included from here");
   return list;

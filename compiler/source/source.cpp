@@ -17,7 +17,7 @@ Span join(const Span& first, const Span& last) {
 }
 
 std::int32_t SourceManager::add_file(std::string name, std::string text, Span included_from) {
-  File file{std::move(name), decode_text(std::move(text)), included_from, {0}};
+  File file{std::move(name), decode_text(std::move(text)), included_from, {0}, {}};
   if (file.text.starts_with("\xef\xbb\xbf")) file.line_starts[0] = 3;
   for (std::size_t i = 0; i < file.text.size(); ++i)
     if (file.text[i] == '\n') file.line_starts.push_back(static_cast<std::uint32_t>(i + 1));
@@ -25,8 +25,8 @@ std::int32_t SourceManager::add_file(std::string name, std::string text, Span in
   return static_cast<std::int32_t>(files_.size() - 1);
 }
 
-std::int32_t SourceManager::add_expansion(std::string macro, Span definition) {
-  expansions_.push_back({std::move(macro), definition});
+std::int32_t SourceManager::add_expansion(std::string macro, Span definition, std::int32_t parent) {
+  expansions_.push_back({std::move(macro), definition, parent});
   return static_cast<std::int32_t>(expansions_.size() - 1);
 }
 
@@ -36,6 +36,21 @@ LineColumn SourceManager::line_column(std::int32_t file_index, std::uint32_t off
   const auto line = std::max(1, static_cast<int>(next - starts.begin()));
   offset = std::max(offset, starts.front());  // behind a byte-order mark
   return {line, static_cast<int>(offset - starts[static_cast<std::size_t>(line - 1)]) + 1};
+}
+
+void SourceManager::add_line_marker(std::int32_t file_index, std::uint32_t offset, int line, const std::string& name) {
+  File& changed = files_[static_cast<std::size_t>(file_index)];
+  const std::string& before = changed.line_markers.empty() ? changed.name : changed.line_markers.back().name;
+  changed.line_markers.push_back({offset, line, name.empty() ? before : name});
+}
+
+Place SourceManager::place(const Span& span) const {
+  const File& source = file(span.file);
+  const LineColumn at = line_column(span.file, span.begin);
+  const auto after = std::upper_bound(source.line_markers.begin(), source.line_markers.end(), span.begin, [](std::uint32_t offset, const File::LineMarker& m) { return offset < m.offset; });
+  if (after == source.line_markers.begin()) return {source.name, at.line, at.column};
+  const File::LineMarker& marker = *std::prev(after);
+  return {marker.name, marker.line + at.line - line_column(span.file, marker.offset).line, at.column};
 }
 
 std::string_view SourceManager::line_text(std::int32_t file_index, int line) const {

@@ -32,26 +32,36 @@ Span join(const Span& first, const Span& last);
 struct LineColumn { int line = 0; int column = 0; };
 
 /// Text that a macro put in place: the macro, and the span inside its definition (of no file for -D and built-in macros).
-struct Expansion { std::string macro; Span definition; };
+/// parent: the expansion that the use of the macro stands in, -1: none.
+struct Expansion { std::string macro; Span definition; std::int32_t parent = -1; };
+
+/// A place as messages show it: #line changes file and line.
+struct Place { std::string_view file; int line = 0; int column = 0; };
 
 struct File {
   std::string name;
   std::string text;
   Span included_from;                      // no place for a file of the command line
   std::vector<std::uint32_t> line_starts;  // byte offset of each line
+  struct LineMarker { std::uint32_t offset; int line; std::string name; };
+  std::vector<LineMarker> line_markers;    // ascending: from offset on, lines are shown as line and on of name
 };
 
 class SourceManager {
  public:
   /// Takes a file in; CR LF and a byte-order mark stay as they are, UTF-16 becomes UTF-8. Returns its index.
   std::int32_t add_file(std::string name, std::string text, Span included_from = {});
-  std::int32_t add_expansion(std::string macro, Span definition);
+  std::int32_t add_expansion(std::string macro, Span definition, std::int32_t parent = -1);
+  /// From the line at offset on, lines of the file are shown as line and on of name (empty: the name as before).
+  void add_line_marker(std::int32_t file, std::uint32_t offset, int line, const std::string& name);
 
   const File& file(std::int32_t index) const { return files_[static_cast<std::size_t>(index)]; }
   std::size_t file_count() const { return files_.size(); }
   const Expansion& expansion(std::int32_t index) const { return expansions_[static_cast<std::size_t>(index)]; }
 
   LineColumn line_column(std::int32_t file, std::uint32_t offset) const;
+  /// The begin of a valid span, as messages show it.
+  Place place(const Span& span) const;
   /// Text of a line without its line end.
   std::string_view line_text(std::int32_t file, int line) const;
   std::string_view text(const Span& span) const;

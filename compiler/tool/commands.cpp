@@ -33,10 +33,11 @@ std::string stage_text(compiler::Session& session, const std::string& stage, con
     return text;
   }
   if (stage == "ir") return compiler::emit_ir(session, files);
+  if (stage == "symbols") return compiler::emit_symbols(session, files);
   if (stage == "tokens" || stage == "tree") {
     for (const compiler::InputFile& file : files) text += stage == "tokens" ? compiler::emit_tokens(session, file) : compiler::emit_tree(session, file);
   } else if (const auto module = session.compile(files)) {
-    text = stage == "bytecode" ? bytecode::disassemble(*module) : compiler::emit_symbols(*module);
+    text = bytecode::disassemble(*module);
   }
   return text;
 }

@@ -24,6 +24,12 @@ constexpr double kSamePlace_mu = 1e-6;
 
 std::string CoordSystem::begin(std::uint32_t number, std::int64_t label) {
   if (program_running()) return "error #38: PROGRAM RUNNING: abort it first";
+  rotary_pointed_ = number == 0;
+  rotary_state_ = RotaryState::kNone;
+  if (rotary_pointed_) {
+    if (program_active()) drop_program();
+    return {};
+  }
   const auto it = machine_.progs.find(number);
   if (it == machine_.progs.end()) return fmt::format("error #22: PROGRAM NOT IN BUFFER: there is no motion program {}", number);
   if (program_active()) drop_program();
@@ -39,13 +45,23 @@ std::string CoordSystem::run(double time_ms) {
 }
 
 std::string CoordSystem::start(double time_ms) {
+  if (rotary_pointed_) return start_rotary(time_ms);
   if (!pointed_) return "error #39: NOT READY TO RUN: no program selected; use b{number} first";
+  return start_at(pointed_, pointed_label_, time_ms);
+}
+
+std::string CoordSystem::execute(ProgramHandle program, double time_ms) {
+  if (program_active()) return fmt::format("error #38: PROGRAM RUNNING: coordinate system {} has a program to go on with", number_);
+  return start_at(program, -1, time_ms);
+}
+
+std::string CoordSystem::start_at(const ProgramHandle& program, std::int64_t label, double time_ms) {
   if (std::string refusal = why_not_ready(); !refusal.empty()) return refusal;
   if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
   if (motor_map().motors.empty())
-    machine_.warn(pointed_.program->source, fmt::format("coordinate system {} has no motors; the program runs dry", number_));
-  if (!runner_.thread.begin(pointed_, pointed_label_))
-    return fmt::format("error #35: INVALID LABEL: program {} has no label N{}", pointed_.program->number, pointed_label_);
+    machine_.warn(program.program->source, fmt::format("coordinate system {} has no motors; the program runs dry", number_));
+  if (!runner_.thread.begin(program, label))
+    return fmt::format("error #35: INVALID LABEL: program {} has no label N{}", program.program->number, label);
   runner_.thread.coord = number_;
   runner_.thread.q = q.data();
   machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
@@ -215,8 +231,12 @@ void CoordSystem::drop_program() {
   due_.clear();
   pending_moves_.clear();
   executed_.clear();
+  end_compensation();
+  spline_.cancel();
+  pvt_velocity_uu_ms_.fill(0);
   block_ = {};
   pause_requested_ = stepping_ = false;
+  rotary_state_ = RotaryState::kNone;
   phase_ = Phase::kIdle;
   resume_ms_ = kNever;
 }

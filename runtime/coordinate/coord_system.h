@@ -23,7 +23,9 @@
 #include "runtime/coordinate/time_base.h"
 #include "runtime/coordinate/transform.h"
 #include "runtime/machine.h"
+#include "runtime/motion/cutter_compensation.h"
 #include "runtime/motion/pipeline.h"
+#include "runtime/motion/spline.h"
 #include "runtime/runner.h"
 
 namespace pmac::runtime {
@@ -62,6 +64,11 @@ class CoordSystem {
   /// Starts at the pointer, or goes on after a pause or a hold.
   std::string run(double time_ms);
   std::string resume(double time_ms);
+  /// cx: starts a program that is in no buffer.
+  std::string execute(ProgramHandle program, double time_ms);
+  /// open rotary: adds lines to program 0 of the coordinate system. One that waits for lines goes on with them.
+  std::string append_rotary(ProgramHandle lines, double time_ms);
+  void clear_rotary() { rotary_.clear(); }
   /// One move, dwell or delay; a program that executes is paused.
   std::string step(double time_ms);
   /// Finishes what is calculated and waits at a programmed point.
@@ -132,6 +139,12 @@ class CoordSystem {
 
   // control.cpp
   std::string start(double time_ms);
+  std::string start_at(const ProgramHandle& program, std::int64_t label, double time_ms);
+
+  // rotary.cpp
+  std::string start_rotary(double time_ms);
+  bool goes_on_in_rotary();
+  bool rotary_ends_here();
   std::string why_not_ready() const;
   std::string go_on_after_pause(double time_ms, bool one_step);
   void pause_here(double time_ms);
@@ -154,6 +167,17 @@ class CoordSystem {
   Flow end_block(Thread& thread);
   std::optional<Fault> set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source);
   std::optional<Fault> place(motion::MotionCommand& command);
+  std::optional<Fault> compensate(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> flush_compensation();
+  std::optional<Fault> add_compensated();
+  std::optional<Fault> add_to_path(motion::MotionCommand command);
+  void end_compensation() { compensation_.cancel(); modal.compensation_side = 0; }
+  std::optional<Fault> hand_on(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu);
+  std::optional<Fault> add_spline_moves();
+  std::optional<Fault> finish_spline();
+  std::optional<Fault> pvt_has_ended(bytecode::SourceLine source) const;
+  std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
@@ -185,6 +209,10 @@ class CoordSystem {
   Runner runner_, kinematics_;
   ProgramHandle pointed_;
   std::int64_t pointed_label_ = -1;
+  enum class RotaryState { kNone, kExecutes, kWaits };  // kWaits: all lines are done, the next ones start at once
+  std::deque<ProgramHandle> rotary_;                    // lines as they were appended; the first ones execute
+  bool rotary_pointed_ = false;                         // b0
+  RotaryState rotary_state_ = RotaryState::kNone;
 
   Phase phase_ = Phase::kIdle;
   AfterRest after_rest_ = AfterRest::kEnd;
@@ -206,6 +234,11 @@ class CoordSystem {
   AxisVector placed_uu_{};      // program coordinates of the pipeline's calculated position
   AxisVector calculated_uu_{};  // the pipeline's, in the coordinates of the axis definitions
   PositionChange position_change_{};
+  motion::CutterCompensation compensation_;
+  std::vector<motion::MotionCommand> compensated_;
+  motion::Spline spline_;
+  std::vector<motion::MotionCommand> spline_moves_;
+  AxisVector pvt_velocity_uu_ms_{};   // at the end of the last pvt move, program coordinates
   OpenBlock block_;
   double dwell_ms_ = 0;
   int home_motor_ = -1;

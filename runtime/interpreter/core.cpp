@@ -297,6 +297,7 @@ dispatch_next:
   MOTION(SetAbs);
   MOTION(SetInc);
   MOTION(SetFrax);
+  MOTION(ClearFrax);
   MOTION(SetNormal);
   OP(SetMotion) : {
     const bool is_feed = pc->b() == static_cast<unsigned>(bytecode::MotionParameter::kFeed);

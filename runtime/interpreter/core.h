@@ -72,13 +72,14 @@ class InterpreterCore {
   bool fill_format(const std::string& format, bool always, std::string& text);
   Next put_out(const Instruction& in);
 
-  // core_vectors.cpp, core_texts.cpp: functions of addresses
+  // core_vectors.cpp, core_transforms.cpp, core_texts.cpp: functions of addresses and transformations
   bool memory_function(const Instruction& in, double* r, std::int64_t& budget);
   bool count_argument(double value, std::int64_t& count);
   bool step_argument(double value, std::int64_t& step);
   bool read_matrix(double address, std::int64_t rows, std::int64_t columns, std::vector<double>& values);
   bool vector_function(bytecode::Function function, const double* x, double& result, std::int64_t& work);
   bool matrix_function(bytecode::Function function, const double* x, double& result, std::int64_t& work);
+  bool transform_function(bytecode::Function function, const double* x, double& result);
   bool write_text(double address, const std::string& text, double& result);
   bool byte_count_argument(double value, std::size_t& count);
   bool writing_text_function(bytecode::Function function, const double* x, double& result);

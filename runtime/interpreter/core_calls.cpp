@@ -91,7 +91,10 @@ InterpreterCore::Next InterpreterCore::call_computed(double target) {
 }
 
 InterpreterCore::Next InterpreterCore::return_from_routine() {
-  if (thread_.frames_.empty()) return end_program();
+  if (thread_.frames_.empty()) {
+    thread_.came_to_end_ = true;
+    return end_program();
+  }
   Thread::SavedFrame& frame = thread_.frames_.back();
   thread_.program_ = std::move(frame.program);
   thread_.pc_ = frame.return_pc;

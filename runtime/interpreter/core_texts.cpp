@@ -127,6 +127,7 @@ bool InterpreterCore::memory_function(const Instruction& in, double* r, std::int
   bool worked = false;
   if (function <= Function::kVmadd) worked = vector_function(function, x, result, work);
   else if (function <= Function::kMtrans) worked = matrix_function(function, x, result, work);
+  else if (function <= Function::kTprop) worked = transform_function(function, x, result);
   else if (function == Function::kSprintf) worked = print_function(x, result);
   else if (function <= Function::kStrtoupper) worked = writing_text_function(function, x, result);
   else worked = reading_text_function(function, x, result);

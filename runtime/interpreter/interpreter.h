@@ -90,6 +90,10 @@ class Thread {
   bool begin(ProgramHandle program, std::int64_t label = -1);
   /// Stands at the top of top_program() again; locals keep their values (the next scan of a PLC). False: nothing was begun.
   bool restart();
+  /// As begin(), but what is modal goes on: the canned cycle of cdef, D variables. For the next lines of a rotary buffer.
+  void go_on_with(ProgramHandle program);
+  /// The program ended by coming to its end, not by stop or abort.
+  bool came_to_end() const { return came_to_end_; }
   /// Runs until something of RunStop happens. jump_back_limit: stop after this many backward jumps since the last call of
   /// reset_jump_backs(); <= 0: never.
   RunResult run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit);
@@ -131,6 +135,7 @@ class Thread {
   std::vector<double> stack_;
   std::size_t base_ = 0;
   std::uint32_t pc_ = 0;
+  bool came_to_end_ = false;
   std::int64_t jump_backs_ = 0;
   std::optional<Fault> host_fault_;
   std::vector<double> format_values_;   // of the next text with a format

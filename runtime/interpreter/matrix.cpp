@@ -20,7 +20,9 @@ std::vector<double> values_of(const Matrix& matrix) { return {matrix.data(), mat
 
 }  // namespace
 
-double determinant(std::span<const double> a, std::size_t n) { return n == 0 ? 1.0 : Matrix(view(a, n, n)).determinant(); }
+double determinant(std::span<const double> a, std::size_t n) {
+  return n == 0 ? 1.0 : Matrix(view(a, n, n)).determinant() + 0.0;  // no -0
+}
 
 double minor_determinant(std::span<const double> a, std::size_t n, std::size_t row, std::size_t column) {
   std::vector<double> rest;

@@ -44,7 +44,7 @@ std::string print_integer(const Conversion& conversion, double value) {
 }  // namespace
 
 std::string print_value(const Conversion& conversion, double value) {
-  if (!std::isfinite(value)) return fmt::sprintf(without_precision(with_letter(conversion, 'f', "#0")), value);
+  if (!std::isfinite(value)) return fmt::sprintf(without_precision(with_letter(conversion, 'f', "#0")), std::isnan(value) ? std::abs(value) : value);  // nan has no sign
   if (conversion.kind == ConversionKind::kInteger) return print_integer(conversion, value);
   return fmt::sprintf("%" + conversion.flags_and_width + conversion.letter, value);
 }

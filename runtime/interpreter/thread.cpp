@@ -12,6 +12,12 @@ bool Thread::begin(ProgramHandle program, std::int64_t label) {
   return stand_at_top(label);
 }
 
+void Thread::go_on_with(ProgramHandle program) {
+  top_ = std::move(program);
+  stack_.assign(std::size_t{top_.program->frame_size} + top_.program->outgoing_count, 0.0);
+  stand_at_top(-1);
+}
+
 bool Thread::restart() { return top_ && stand_at_top(-1); }
 
 bool Thread::stand_at_top(std::int64_t label) {
@@ -19,6 +25,7 @@ bool Thread::stand_at_top(std::int64_t label) {
   frames_.clear();
   forget_lines();
   base_ = 0;
+  came_to_end_ = false;
   jump_backs_ = 0;
   host_fault_.reset();
   format_values_.clear();

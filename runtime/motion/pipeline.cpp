@@ -14,8 +14,26 @@ namespace {
 
 using runtime::Fault;
 
+/// Unsegmented pvt: the cubic in u of each motor, u = u0 + rate * time.
+Segment pvt_segment(const PathPiece& piece) {
+  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
+  const Curve& curve = *piece.part[0].curve;
+  const double u = piece.part[0].u[0], rate = piece.part[0].u[1];
+  for (std::size_t m = 0; m < curve.motor_start_mu.size(); ++m) {
+    const auto [c1, c2, c3] = cubic_coefficients(curve.motor_delta_mu[m], curve.motor_start_rate_mu[m], curve.motor_end_rate_mu[m]);
+    MotorCubic q;
+    q.c0 = curve.motor_start_mu[m] + u * (c1 + u * (c2 + u * c3));
+    q.c1 = rate * (c1 + u * (2 * c2 + u * 3 * c3));
+    q.c2 = rate * rate * (c2 + 3 * c3 * u);
+    q.c3 = rate * rate * rate * c3;
+    segment.motor.push_back(q);
+  }
+  return segment;
+}
+
 /// Unsegmented: lines only, so that a motor is a cubic of time: start + delta * u(t), two of them superposed at a corner.
 Segment motor_segment(const PathPiece& piece) {
+  if (piece.part[0].curve->rates) return pvt_segment(piece);
   Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
   segment.motor.resize(piece.part[0].curve->motor_start_mu.size());
   for (int i = 0; i < piece.part_count; ++i) {

@@ -130,7 +130,7 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
   switch (opcode_info(op).format) {
     case OperandFormat::kNone: return Instruction::with_imm(op, 0, 0);
     case OperandFormat::kReg: return Instruction::with_imm(op, reg(), 0);
-    case OperandFormat::kReg3: return Instruction::with_imm(op, reg(3), 0);
+    case OperandFormat::kReg3: return Instruction::with_imm(op, reg(3), imm_below(2));
     case OperandFormat::kRegReg: return Instruction::with_bc(op, reg(), reg());
     case OperandFormat::kRegRegReg: return Instruction::with_bc(op, reg(), reg(), reg());
     case OperandFormat::kRegConst: return Instruction::with_imm(op, reg(), imm_below(module_.constants.size()));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,8 +18,10 @@ using Token = PreprocessorToken;
 using Kind = PreprocessorToken::Kind;
 
 constexpr int kMaxIncludeDepth = 64;
-constexpr std::array<std::string_view, 14> kDirectives{"define", "undef", "ifdef",   "ifndef", "if",      "elif", "else",
-                                                       "endif",  "include", "line", "pragma", "warning", "error", "region"};
+constexpr std::size_t kMaxIncludes = 10000;             // of one file of the command line
+constexpr std::size_t kMaxIncludeBytes = 256u << 20;    // of one included file
+constexpr std::array<std::string_view, 15> kDirectives{"define",  "undef", "ifdef",  "ifndef",  "if",    "elif",   "else",     "endif",
+                                                       "include", "line",  "pragma", "warning", "error", "region", "endregion"};
 
 std::string text_of(const std::vector<Token>& line, std::size_t first, std::size_t last) {
   std::string text;
@@ -66,57 +69,108 @@ void Preprocessor::run_directive(std::string_view name, const Tokens& line, std:
   const std::size_t at = skip_blanks(line, first + 2);
   if (name == "if" || name == "ifdef" || name == "ifndef" || name == "elif" || name == "else" || name == "endif")
     return conditional_directive(name, line, at, directive);
+  if (name == "define") return define_directive(line, at, directive);
   if (!is_active()) return;
-  if (name == "define") define_directive(line, at, directive);
-  else if (name == "include") include_directive(line, at, directive);
-  else if (name == "undef" && at < line.size()) macros_.erase(std::string(line[at].text));
+  if (name == "include") include_directive(line, at, directive);
+  else if (name == "undef") undef_directive(line, at, directive);
+  else if (name == "line") line_directive(line, at, directive);
   else if (name == "error") diagnostics_.error("PM1008", directive, "#error " + text_of(line, at, line.size()));
   else if (name == "warning") diagnostics_.warning("PM1009", directive, "#warning " + text_of(line, at, line.size()));
+  else if (name == "pragma") diagnostics_.warning("PM1014", directive, "#pragma has no effect");
 }
 
+/// (a, b), (a, ...), (); at stands on the parenthesis and ends behind the closing one.
 bool Preprocessor::parse_parameters(const Tokens& line, std::size_t& at, Macro& macro) {
   if (at >= line.size() || line[at].text != "(") return true;
   macro.function_like = true;
+  bool name_wanted = true;
   for (++at; at < line.size(); ++at) {
-    if (line[at].text == ")") return ++at, true;
-    if (line[at].kind == Kind::kIdentifier) macro.parameters.emplace_back(line[at].text);
-    else if (line[at].kind != Kind::kBlank && line[at].text != ",") return false;
+    const Token& token = line[at];
+    const bool dots = token.text == "." && at + 2 < line.size() && line[at + 1].text == "." && line[at + 2].text == ".";
+    if (token.text == ")") return ++at, !name_wanted || macro.parameters.empty();
+    if (token.kind == Kind::kBlank) continue;
+    if (token.text == "," && !name_wanted && !macro.variadic) {
+      name_wanted = true;
+    } else if (name_wanted && (token.kind == Kind::kIdentifier || dots)) {
+      name_wanted = false;
+      macro.variadic = dots;
+      macro.parameters.emplace_back(dots ? "__VA_ARGS__" : token.text);
+      at += dots ? 2 : 0;
+    } else {
+      return false;
+    }
   }
   return false;
 }
 
-void Preprocessor::define_directive(const Tokens& line, std::size_t at, const source::Span& directive) {
+std::optional<Macro> Preprocessor::read_definition(const Tokens& line, std::size_t at, const source::Span& directive) {
   if (at >= line.size() || line[at].kind != Kind::kIdentifier) {
-    diagnostics_.error("PM1004", directive, "#define needs a name");
-    return;
+    if (is_active()) diagnostics_.error("PM1004", directive, "#define needs a name");
+    return std::nullopt;
   }
   Macro macro;
   macro.name = line[at].text;
   macro.name_span = line[at].span;
   if (!parse_parameters(line, ++at, macro)) {
-    diagnostics_.error("PM1004", macro.name_span, fmt::format("the parameters of macro '{}' are not closed; add )", macro.name));
-    return;
+    if (is_active()) diagnostics_.error("PM1004", macro.name_span, fmt::format("the parameters of macro '{}' are not names between commas, closed by )", macro.name));
+    return std::nullopt;
   }
   std::size_t last = line.size();
   at = skip_blanks(line, at);
   while (last > at && (line[last - 1].kind == Kind::kBlank || line[last - 1].kind == Kind::kNewline)) --last;
   macro.body.assign(line.begin() + static_cast<std::ptrdiff_t>(at), line.begin() + static_cast<std::ptrdiff_t>(last));
   macro.body_text = text_of(line, at, last);
-  const bool is_buffer_command = macro.name == "lookahead" && !macro.body.empty() && macro.body.front().kind == Kind::kNumber;
-  if (!is_buffer_command) return store(std::move(macro));
-  auto& warning = diagnostics_.warning("PM1010", directive, fmt::format("#define only makes a macro named lookahead; the lookahead buffer is made by the on-line command define lookahead {}", macro.body_text));
-  warning.fix = source::FixIt{source::join(directive, line[last - 1].span), "&1 define lookahead " + macro.body_text};
+  return macro;
 }
 
-void Preprocessor::store(Macro macro) {
-  const auto known = macros_.find(macro.name);
-  const bool changed = known != macros_.end() && (known->second.body_text != macro.body_text || known->second.parameters != macro.parameters);
-  if (changed) {
-    auto& warning = diagnostics_.warning("PM1011", macro.name_span, fmt::format("macro '{}' is defined again with another text", macro.name));
-    warning.notes.push_back({known->second.name_span, "the definition before is here"});
+void Preprocessor::define_directive(const Tokens& line, std::size_t at, const source::Span& directive) {
+  auto macro = read_definition(line, at, directive);
+  if (!macro) return;
+  list_definition(*macro, is_active());
+  if (!is_active()) return;
+  const bool is_buffer_command = macro->name == "lookahead" && !macro->body.empty() && macro->body.front().kind == Kind::kNumber;
+  if (is_buffer_command) {
+    const std::string text = macro->body_text;
+    auto& warning = diagnostics_.warning("PM1010", directive, fmt::format("#define only makes a macro named lookahead; the lookahead buffer is made by the on-line command define lookahead {}", text));
+    warning.fix = source::FixIt{source::join(directive, macro->body.back().span), "&1 define lookahead " + text};
+    return;
   }
-  std::string name = macro.name;
-  macros_.insert_or_assign(std::move(name), std::move(macro));
+  record(SourceLine::Kind::kDefinition, line, directive.file);
+  macros_.define(std::move(*macro));
+}
+
+void Preprocessor::list_definition(const Macro& macro, bool active) {
+  std::string parameters;
+  for (const std::string& parameter : macro.parameters) parameters += (parameters.empty() ? "(" : ", ") + (parameter == "__VA_ARGS__" ? std::string("...") : parameter);
+  if (macro.function_like) parameters += parameters.empty() ? "()" : ")";
+  definitions_.push_back({macro.name, std::move(parameters), macro.body_text, macro.name_span, active});
+}
+
+void Preprocessor::undef_directive(const Tokens& line, std::size_t at, const source::Span& directive) {
+  if (at >= line.size() || line[at].kind != Kind::kIdentifier) {
+    diagnostics_.error("PM1004", directive, "#undef needs a name");
+    return;
+  }
+  record(SourceLine::Kind::kDefinition, line, directive.file);
+  macros_.undefine(line[at].text);
+}
+
+/// #line 12 "file": what follows is shown as line 12 and on of that file.
+void Preprocessor::line_directive(const Tokens& line, std::size_t at, const source::Span& directive) {
+  const Tokens words = macros_.expand({line.begin() + static_cast<std::ptrdiff_t>(at), line.end()});
+  const std::size_t first = skip_blanks(words, 0);
+  int number = 0;
+  const bool has_number = first < words.size() && words[first].kind == Kind::kNumber;
+  const std::string_view digits = has_number ? words[first].text : std::string_view();
+  const bool valid = has_number && std::from_chars(digits.data(), digits.data() + digits.size(), number).ec == std::errc();
+  const std::size_t name = skip_blanks(words, first + 1);
+  const bool names_file = name < words.size() && words[name].kind == Kind::kString && words[name].text.size() >= 2;
+  if (!valid || (name < words.size() && !names_file)) {
+    diagnostics_.error("PM1015", directive, "#line needs a number, and may have a file name in quotation marks");
+    return;
+  }
+  const std::string file = names_file ? std::string(words[name].text.substr(1, words[name].text.size() - 2)) : std::string();
+  sources_.add_line_marker(directive.file, line.back().span.end, number, file);
 }
 
 std::optional<std::int32_t> Preprocessor::open_include(const std::string& name, const source::Span& from) {
@@ -124,8 +178,8 @@ std::optional<std::int32_t> Preprocessor::open_include(const std::string& name, 
   std::vector<fs::path> candidates{fs::path(sources_.file(from.file).name).parent_path() / name};
   for (const std::string& dir : include_dirs_) candidates.push_back(fs::path(dir) / name);
   for (const fs::path& path : candidates) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(path, ignored)) continue;
+    std::error_code error;
+    if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kMaxIncludeBytes) continue;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) continue;
     std::string text{std::istreambuf_iterator<char>(stream), {}};
@@ -135,23 +189,39 @@ std::optional<std::int32_t> Preprocessor::open_include(const std::string& name, 
 }
 
 void Preprocessor::include_directive(const Tokens& line, std::size_t at, const source::Span& directive) {
+  if (at < line.size() && line[at].kind == Kind::kIdentifier) {
+    const Tokens expanded = macros_.expand({line.begin() + static_cast<std::ptrdiff_t>(at), line.end()});
+    const std::size_t first = skip_blanks(expanded, 0);
+    const bool is_name = first < expanded.size() && (expanded[first].kind == Kind::kString || expanded[first].text == "<");
+    if (is_name) return include_directive(expanded, first, directive);
+  }
   std::string name = at < line.size() ? std::string(line[at].text) : std::string();
   if (name == "<") name = text_of(line, at, line.size());
-  if (name.size() < 2 || (name.front() != '"' && name.front() != '<')) {
+  const std::size_t close = name.size() < 3 ? std::string::npos : name.find_last_of(name.front() == '<' ? ">" : "\"");
+  if (close == std::string::npos || close < 2 || (name.front() != '"' && name.front() != '<')) {
     diagnostics_.error("PM1005", directive, "#include needs a file name in quotation marks");
     return;
   }
-  name = name.substr(1, name.find_last_of("\">") - 1);
+  name = name.substr(1, close - 1);
   std::replace(name.begin(), name.end(), '\\', '/');
-  if (include_depth_ >= kMaxIncludeDepth) {
-    diagnostics_.error("PM1006", directive, fmt::format("#include is nested more than {} deep; does the file include itself?", kMaxIncludeDepth));
+  include_file(name, source::Span{directive.file, line[at].span.begin, line[at].span.end, -1});
+}
+
+void Preprocessor::include_file(const std::string& name, const source::Span& place) {
+  if (includes_stopped_) return;
+  includes_stopped_ = include_depth_ >= kMaxIncludeDepth || include_count_ >= kMaxIncludes;
+  if (includes_stopped_) {
+    const std::string problem = include_depth_ >= kMaxIncludeDepth ? fmt::format("#include is nested more than {} deep; does the file include itself?", kMaxIncludeDepth)
+                                                                  : fmt::format("more than {} files are included", kMaxIncludes);
+    diagnostics_.error("PM1006", place, problem);
     return;
   }
-  const auto file = open_include(name, line[at].span);
+  const auto file = open_include(name, place);
   if (!file) {
-    diagnostics_.error("PM1005", line[at].span, fmt::format("cannot find the file \"{}\"", name));
+    diagnostics_.error("PM1005", place, fmt::format("cannot find the file \"{}\"", name));
     return;
   }
+  ++include_count_;
   ++include_depth_;
   run_file(*file);
   --include_depth_;
@@ -162,7 +232,8 @@ void Preprocessor::conditional_directive(std::string_view name, const Tokens& li
     const bool parent = is_active();
     bool active = false;
     if (parent && name == "if") active = evaluate_condition(line, at, directive);
-    else if (parent && at < line.size()) active = macros_.contains(line[at].text) == (name == "ifdef");
+    else if (parent && at < line.size() && line[at].kind == Kind::kIdentifier) active = macros_.is_defined(line[at].text) == (name == "ifdef");
+    else if (parent) diagnostics_.error("PM1007", directive, fmt::format("#{} needs a name", name));
     conditionals_.push_back({parent && active, active, parent, false, directive});
     return;
   }
@@ -179,6 +250,7 @@ void Preprocessor::conditional_directive(std::string_view name, const Tokens& li
   top.taken = top.taken || wanted;
 }
 
+/// defined NAME and defined(NAME) as 1 and 0, and everything else expanded.
 bool Preprocessor::evaluate_condition(const Tokens& line, std::size_t at, const source::Span& directive) {
   Tokens tokens;
   for (std::size_t i = at; i < line.size(); ++i) {
@@ -189,17 +261,18 @@ bool Preprocessor::evaluate_condition(const Tokens& line, std::size_t at, const 
     std::size_t name = skip_blanks(line, i + 1);
     const bool parenthesis = name < line.size() && line[name].text == "(";
     if (parenthesis) name = skip_blanks(line, name + 1);
-    const bool known = name < line.size() && macros_.contains(line[name].text);
+    const bool known = name < line.size() && macros_.is_defined(line[name].text);
     tokens.push_back({Kind::kNumber, known ? "1" : "0", line[i].span});
     i = parenthesis ? skip_blanks(line, name + 1) : name;
+    const bool closed = !parenthesis || (i < line.size() && line[i].text == ")");
+    const bool named = name < line.size() && line[name].kind == Kind::kIdentifier;
+    if (named && closed) continue;
+    diagnostics_.error("PM1007", directive, "this condition cannot be evaluated: defined needs a name");
+    return false;
   }
-  Tokens expanded;
-  std::vector<const Macro*> active;
-  produced_ = 0;
-  expand(tokens, active, expanded);
-  const auto value = evaluate_if(expanded);
-  if (!value) diagnostics_.error("PM1007", directive, "this #if condition cannot be evaluated");
-  return value.value_or(0) != 0;
+  const IfValue value = evaluate_if(macros_.expand(tokens));
+  if (!value.problem.empty()) diagnostics_.error("PM1007", directive, "this condition cannot be evaluated: " + value.problem);
+  return value.problem.empty() && value.value != 0;
 }
 
 }  // namespace pmac::compiler::power_pmac

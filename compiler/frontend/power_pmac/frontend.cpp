@@ -28,6 +28,8 @@ void Frontend::know_name(const std::string& name) { state_->names.global.insert(
 
 std::vector<std::string> Frontend::known_names() const { return {state_->names.global.begin(), state_->names.global.end()}; }
 
+const std::vector<MacroDefinition>& Frontend::macro_definitions() const { return state_->preprocessor.definitions(); }
+
 ir::Unit Frontend::read(const std::string& name, std::string text) {
   state_->names.local.clear();
   const auto tree = parse(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
@@ -73,6 +75,11 @@ void print_tree(const SyntaxTree& tree, antlr4::tree::ParseTree* node, int depth
 }
 
 }  // namespace
+
+std::vector<std::string> Frontend::ambiguities(const std::string& name, std::string text) {
+  state_->names.local.clear();
+  return find_ambiguities(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
+}
 
 std::string Frontend::tree(const std::string& name, std::string text) {
   const auto tree = parse(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/frontend/power_pmac/macro_definition.h"
 #include "compiler/ir/ir.h"
 #include "compiler/source/source.h"
 
@@ -21,11 +22,16 @@ class Frontend {
   /// Names that declarations of all texts so far mention, right or wrong.
   std::vector<std::string> known_names() const;
 
+  /// Every #define so far, in order.
+  const std::vector<MacroDefinition>& macro_definitions() const;
+
   ir::Unit read(const std::string& name, std::string text);
   /// One token a line: line:column, kind, text.
   std::string tokens(const std::string& name, std::string text);
   /// The parse tree, one rule a line, indented.
   std::string tree(const std::string& name, std::string text);
+  /// Places where the grammar can read the text in more than one way, by the parser generator's exact analysis: "line: rule".
+  std::vector<std::string> ambiguities(const std::string& name, std::string text);
 
  private:
   struct State;

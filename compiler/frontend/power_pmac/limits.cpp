@@ -17,7 +17,8 @@ constexpr int kMaxOperators = 1000;   // of one statement
 constexpr int kMaxLineTokens = 4000;  // after macro expansion; long lines cost time with the square of their length
 constexpr int kMaxPrefix = 200;       // ---- in front of one operand
 
-bool is_control(std::size_t type) { return type == T::IF || type == T::WHILE || type == T::DO || type == T::ELSE || type == T::SWITCH; }
+bool is_else(std::size_t type) { return type == T::ELSE || type == T::ELSE_IF; }
+bool is_control(std::size_t type) { return type == T::IF || type == T::WHILE || type == T::DO || is_else(type) || type == T::SWITCH; }
 
 bool is_operator(std::size_t type) {
   return type == T::PLUS || type == T::MINUS || type == T::STAR || type == T::AMPERSAND || type == T::SYNC_ASSIGN ||
@@ -60,14 +61,14 @@ class NestingScan {
       blocks_.clear();
       else_ifs_ = bare_ = 0;
     } else if (is_control(type)) {
-      const bool begins_chain = type != T::ELSE && last_ != T::ELSE;
+      const bool begins_chain = !is_else(type) && !is_else(last_);
       if (begins_chain && !header_ended_) else_ifs_ = bare_ = 0;
       ++bare_;
-      else_ifs_ += type == T::ELSE;
+      else_ifs_ += is_else(type);
     }
     if (parentheses_ == 0 && type != T::RIGHT && !is_control(type)) header_ended_ = false;
     if (type == T::RIGHT && parentheses_ == 0) header_ended_ = in_header_;
-    if (is_control(type)) in_header_ = true, header_ended_ = type == T::ELSE || type == T::DO;
+    if (is_control(type)) in_header_ = true, header_ended_ = is_else(type) || type == T::DO;
     else if (parentheses_ == 0 && type != T::RIGHT) in_header_ = false;
     last_ = type;
     if (else_ifs_ > kMaxElseIf) return "this chain of else if is too long; use switch";

@@ -100,4 +100,18 @@ bool Lowering::lower_flags_and_cycles(P::SimpleStatementContext* statement, ir::
   return true;
 }
 
+/// A rotary buffer executes while it is being filled: nothing in it can be jumped to. User's Manual p659-662.
+void Lowering::check_rotary(P::StatementContext* statement) {
+  const auto refuse = [&](antlr4::ParserRuleContext* where, std::string_view what) { diagnostics_.error("PM2052", span_of(where), fmt::format("a rotary buffer has no {}; put them into a subprogram and call that", what)); };
+  if (auto* label = statement->label(); label && label->COLON()) refuse(label, "labels");
+  if (auto* simple = statement->simpleStatement(); simple && (simple->GOTO() || simple->GOSUB() || simple->CALLSUB())) refuse(simple, "goto, gosub or callsub");
+  if (auto* selection = statement->switchStatement()) refuse(selection, "switch");
+  auto* branch = statement->ifStatement();
+  const bool has_else = branch && branch->elsePart() && (branch->elsePart()->ELSE() || branch->elsePart()->ELSE_IF());
+  if (has_else) refuse(branch, "else");
+  const bool is_conditional = branch || statement->whileStatement() || statement->doStatement();
+  const bool one_line = !statement->start || !statement->stop || statement->start->getLine() == statement->stop->getLine();
+  if (is_conditional && !one_line) diagnostics_.error("PM2052", span_of(statement->start), "in a rotary buffer an if or while stands on one line with what it governs");
+}
+
 }  // namespace pmac::compiler::power_pmac

@@ -76,9 +76,9 @@ void Lowering::lower_motion_word(P::MotionWordContext* word, ir::Body& out) {
     case P::LINEAR: return out.push_back(ir::make_stmt(span, ir::SetMode{ir::MoveMode::kLinear}));
     case P::RAPID: return out.push_back(ir::make_stmt(span, ir::SetMode{ir::MoveMode::kRapid}));
     case P::CIRCLE: {
-      const auto number = whole_number(token_of(word->NUMBER()), 4).value_or(1);
-      if (number == 0) diagnostics_.error("PM4005", span, "the circle modes are circle1 to circle4");
-      return out.push_back(ir::make_stmt(span, ir::SetMode{static_cast<ir::MoveMode>(static_cast<int>(ir::MoveMode::kCircle1) + std::max<std::int64_t>(number, 1) - 1)}));
+      const auto number = whole_number(token_of(word->NUMBER()), 1000000).value_or(1);
+      if (number < 1 || number > 4) diagnostics_.error("PM4005", span, "the circle modes are circle1 to circle4");
+      return out.push_back(ir::make_stmt(span, ir::SetMode{static_cast<ir::MoveMode>(static_cast<int>(ir::MoveMode::kCircle1) + std::clamp<std::int64_t>(number, 1, 4) - 1)}));
     }
     case P::PVT:
       out.push_back(ir::make_stmt(span, ir::SetMode{ir::MoveMode::kPvt}));
@@ -88,18 +88,25 @@ void Lowering::lower_motion_word(P::MotionWordContext* word, ir::Body& out) {
   }
 }
 
+/// A normal of the axes X Y Z, of XX YY ZZ, or both: normal K-1, normal II1 JJ1.
 void Lowering::lower_normal(P::MotionWordContext* word, ir::Body& out) {
-  ir::SetNormal normal;
+  ir::SetNormal normals[2];
+  bool given[2] = {false, false};
   const auto letters = word->NORMAL_VECTOR();
   const auto values = word->data();
   for (std::size_t i = 0; i < std::min(letters.size(), values.size()); ++i) {
     const int index = vector_index(text_of(token_of(letters[i])));
-    if (index > 2) return not_supported(span_of(token_of(letters[i])), "a plane normal of the XX YY ZZ axes");
-    if (index >= 0) normal.vector[index] = lower_data(values[i]);
+    if (index < 0) continue;
+    given[index / 3] = true;
+    normals[index / 3].vector[index % 3] = lower_data(values[i]);
   }
-  for (ir::ExprPtr& component : normal.vector)
-    if (!component) component = ir::make_number(0, span_of(word));
-  out.push_back(ir::make_stmt(span_of(word), std::move(normal)));
+  for (int set = 0; set < 2; ++set) {
+    if (!given[set]) continue;
+    normals[set].second_set = set == 1;
+    for (ir::ExprPtr& component : normals[set].vector)
+      if (!component) component = ir::make_number(0, span_of(word));
+    out.push_back(ir::make_stmt(span_of(word), std::move(normals[set])));
+  }
 }
 
 void Lowering::lower_axis_mode(P::MotionWordContext* word, ir::Body& out) {
@@ -111,9 +118,8 @@ void Lowering::lower_axis_mode(P::MotionWordContext* word, ir::Body& out) {
     return out.push_back(ir::make_stmt(span, mode));
   }
   const bool off = kind == P::NOFRAX || kind == P::NOFRAX2;
-  if (off && word->axisList()) return not_supported(span, "nofrax with a list of axes");
-  const std::uint32_t axes = off ? 0 : word->axisList() ? axis_mask(word->axisList(), nullptr) : kAllAxes;
-  out.push_back(ir::make_stmt(span, ir::SetFrax{axes, kind == P::FRAX2 || kind == P::NOFRAX2}));
+  const std::uint32_t axes = word->axisList() ? axis_mask(word->axisList(), nullptr) : kAllAxes;
+  out.push_back(ir::make_stmt(span, ir::SetFrax{axes, kind == P::FRAX2 || kind == P::NOFRAX2, off}));
 }
 
 std::uint32_t Lowering::axis_mask(P::AxisListContext* list, bool* centres) {

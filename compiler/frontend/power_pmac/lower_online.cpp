@@ -27,6 +27,7 @@ ir::Unit Lowering::lower_file(P::FileContext* file) {
     } else if (auto* online = dynamic_cast<P::OnlineContext*>(child)) {
       online_ = true;
       if (online->CLEAR()) lower_clear(online, unit);
+      else if (online->CX()) lower_at_once(online, unit);
       else lower_online(online, unit.load);
     }
   }
@@ -51,7 +52,11 @@ void Lowering::lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffe
     case P::SUBPROG: buffer.kind = ProgramKind::kSubprog; break;
     case P::FORWARD: buffer.kind = ProgramKind::kForward; break;
     case P::INVERSE: buffer.kind = ProgramKind::kInverse; break;
-    case P::ROTARY: buffer.kind = ProgramKind::kRotary; buffer.number = 0; break;
+    case P::ROTARY:
+      buffer.kind = ProgramKind::kRotary;
+      buffer.number = 0;
+      if (!header->NUMBER().empty()) diagnostics_.error("PM3008", span_of(token_of(header->NUMBER(0))), "open rotary takes no number; address the coordinate system before it, as in &2 open rotary");
+      return;
     default: break;
   }
   P::BufferNameContext* name = header->bufferName();
@@ -60,6 +65,7 @@ void Lowering::lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffe
   else if (name) buffer.number = whole_number(token_of(name->NUMBER()), most).value_or(0);
   else if (!header->NUMBER().empty()) buffer.number = whole_number(token_of(header->NUMBER(0)), bytecode::kMaxCoords - 1).value_or(0);
   if (name && buffer.kind == ProgramKind::kProg && buffer.number == 0 && buffer.name.empty()) diagnostics_.error("PM3008", span_of(name), "program numbers begin with 1; program 0 is the rotary buffer");
+  buffer.name_span = span_of(name);
   buffer.parameters = lower_parameters(header->parameters());
 }
 
@@ -68,15 +74,30 @@ void Lowering::lower_buffer(P::BufferContext* context, ir::Unit& unit) {
   buffer.span = span_of(context->openHeader());
   buffer.close_span = context->CLOSE() ? span_of(token_of(context->CLOSE())) : buffer.span;
   lower_open_header(context->openHeader(), buffer);
+  in_rotary_ = buffer.kind == ProgramKind::kRotary;
   for (antlr4::tree::ParseTree* child : context->children) {
     if (auto* statement = dynamic_cast<P::StatementContext*>(child)) lower_statement(statement, buffer.body);
     auto* entry = dynamic_cast<P::EntryPointContext*>(child);
     if (!entry || entry->exception || !entry->NAME()) continue;
     buffer.routines.push_back({text_of(token_of(entry->NAME())), span_of(entry), lower_parameters(entry->parameters()), buffer.body.size(), -1});
   }
+  in_rotary_ = false;
+  if (buffer.kind == ProgramKind::kRotary && !buffer.routines.empty()) diagnostics_.error("PM2052", buffer.routines.front().span, "a rotary buffer has no routines; put them into a subprogram and call that");
   const bool header_is_broken = !context->openHeader() || context->openHeader()->exception;
   if (header_is_broken) return;
   unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
+  unit.buffers.push_back(std::move(buffer));
+}
+
+/// cx linear X5: statements of a buffer that the addressed coordinate system executes at once.
+void Lowering::lower_at_once(P::OnlineContext* online, ir::Unit& unit) {
+  if (online->exception) return;
+  ir::Buffer buffer;
+  buffer.number = 0;
+  buffer.span = buffer.close_span = span_of(online);
+  online_ = false;
+  lower_statements(online->statement(), buffer.body);
+  unit.load.push_back(ir::make_stmt(buffer.span, ir::ExecuteAtOnce{unit.buffers.size()}));
   unit.buffers.push_back(std::move(buffer));
 }
 
@@ -115,7 +136,6 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
     return out.push_back(ir::make_stmt(span, ir::Report{std::move(value), name}));
   }
   if (online->CLOSE()) return;
-  if (online->CX()) return not_supported(span_of(token_of(online->CX())), "cx");
   if (online->programControl()) return lower_program_control(online->programControl(), out);
   if (online->onlineJog()) return lower_online_jog(online->onlineJog(), span, out);
   if (online->COMMAND()) return lower_command(lower_case(text_of(online->start)), span, out);

@@ -61,6 +61,7 @@ void Lowering::lower_statements(const std::vector<P::StatementContext*>& stateme
 void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (!statement || statement->exception) return;
   const source::Span span = span_of(statement);
+  if (in_rotary_) check_rotary(statement);
   if (auto* block = statement->block()) return out.push_back(lower_block(block));
   if (auto* branch = statement->ifStatement()) return out.push_back(lower_if(branch));
   if (auto* loop = statement->whileStatement()) {
@@ -77,6 +78,10 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
   if (auto* code = statement->codeLine()) return lower_code_line(code, out);
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
+  if (auto* call = statement->callStatement()) {
+    ir::NameUse use{text_of(call->start), true, lower_arguments(call->arguments())};
+    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
+  }
   if (auto* simple = statement->simpleStatement()) return lower_simple(simple, out);
   if (statement->onlineInBuffer()) diagnostics_.error("PM2013", span, "this is an on-line command; it cannot stand in a program buffer (close is missing before it?)");
 }
@@ -95,14 +100,16 @@ ir::StmtPtr Lowering::lower_block(P::BlockContext* block) {
 
 ir::StmtPtr Lowering::lower_if(P::IfStatementContext* statement) {
   ir::If result;
-  const auto bodies = statement->body();
   ir::ExprPtr condition = lower_condition(statement->condition());
-  result.branches.push_back({std::move(condition), lower_body(bodies.empty() ? nullptr : bodies[0])});
-  for (P::ElseIfContext* branch : statement->elseIf()) {
-    ir::ExprPtr else_condition = lower_condition(branch->condition());
-    result.branches.push_back({std::move(else_condition), lower_body(branch->body())});
+  result.branches.push_back({std::move(condition), lower_body(statement->body())});
+  for (P::ElsePartContext* part = statement->elsePart(); part; part = part->elsePart()) {
+    if (part->ELSE_IF()) {
+      ir::ExprPtr else_condition = lower_condition(part->condition());
+      result.branches.push_back({std::move(else_condition), lower_body(part->body())});
+    } else if (part->ELSE()) {
+      result.otherwise = lower_body(part->body());
+    }
   }
-  if (bodies.size() > 1) result.otherwise = lower_body(bodies[1]);
   return ir::make_stmt(span_of(statement), std::move(result));
 }
 
@@ -126,11 +133,6 @@ void Lowering::lower_label(P::LabelContext* label, ir::Body& out) {
 }
 
 void Lowering::lower_assignment(P::AssignmentContext* assignment, ir::Body& out) {
-  if (assignment->call) {
-    ir::NameUse use{text_of(assignment->call), true, lower_arguments(assignment->arguments())};
-    const source::Span span = span_of(assignment);
-    return out.push_back(ir::make_stmt(span, ir::Evaluate{std::make_unique<ir::Expr>(ir::Expr{span, std::move(use)})}));
-  }
   ir::Assign result;
   result.target = lower_lvalue(assignment->lvalue());
   if (assignment->step) {
@@ -163,7 +165,8 @@ void Lowering::lower_simple(P::SimpleStatementContext* statement, ir::Body& out)
   if (statement->PSET()) return lower_pset(statement, out);
   if (statement->programControl()) return lower_program_control(statement->programControl(), out);
   const bool bias = statement->PCLR() || statement->PSTORE() || statement->PLOAD();
-  if (bias && !statement->axisList()) {
+  if (bias) {
+    if (statement->axisList()) diagnostics_.error("PM2053", span_of(statement->axisList()), fmt::format("{} acts on all axes; it takes no list", lower_case(text_of(statement->start))));
     const auto verb = statement->PCLR() ? ir::ControlVerb::kPclr : statement->PSTORE() ? ir::ControlVerb::kPstore : ir::ControlVerb::kPload;
     std::vector<ir::ExprPtr> arguments;
     arguments.push_back(nullptr);
@@ -221,6 +224,7 @@ void Lowering::lower_declaration(P::DeclarationContext* declaration, ir::Body& o
     auto& node = std::get<ir::DefinePointer>(statement->node);
     node.name = definition.name;
     node.name_span = span_of(token_of(pointer->NAME()));
+    node.declaration = span;
     if (pointer->NUMBER()) node.size = static_cast<int>(whole_number(token_of(pointer->NUMBER()), bytecode::kMCount).value_or(0));
     out.push_back(std::move(statement));
   }

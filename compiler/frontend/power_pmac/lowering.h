@@ -88,7 +88,11 @@ class Lowering {
   void add_control(ir::ControlVerb verb, source::Span span, std::vector<ir::ExprPtr> arguments, ir::Body& out);
   std::string string_value(const antlr4::Token& token) const;
 
+  // what a rotary buffer cannot hold (lower_lines.cpp)
+  void check_rotary(P::StatementContext* statement);
+
   // the load stream (lower_online.cpp)
+  void lower_at_once(P::OnlineContext* online, ir::Unit& unit);
   void lower_buffer(P::BufferContext* buffer, ir::Unit& unit);
   void lower_clear(P::OnlineContext* online, ir::Unit& unit);
   void lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffer);
@@ -114,6 +118,7 @@ class Lowering {
   const SyntaxTree& tree_;
   source::Diagnostics& diagnostics_;
   bool online_ = false;                        // lowering an on-line command
+  bool in_rotary_ = false;                     // lowering a rotary buffer: no jumps, blocks of one line
   bool coord_addressed_last_ = false;          // & came after #
   std::size_t address_line_ = 0;
   std::vector<std::int64_t> motor_list_, coord_list_;  // of #1..3 and &1,2: for the next command of the line

@@ -11,12 +11,9 @@
 namespace pmac::compiler::power_pmac {
 namespace {
 
-using Token = PreprocessorToken;
 using Kind = PreprocessorToken::Kind;
 
-constexpr std::size_t kMaxExpansionDepth = 200;
-constexpr std::size_t kMaxProducedTokens = 200000;
-constexpr int kMaxArgumentDepth = 100;  // macro calls inside the arguments of macro calls
+constexpr std::size_t kMaxExpandedBytes = 512u << 20;  // of one file with what it includes
 
 bool is_name_start(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -57,11 +54,6 @@ std::size_t end_of_token(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-std::size_t skip_blanks(const std::vector<Token>& line, std::size_t at) {
-  while (at < line.size() && (line[at].kind == Kind::kBlank || line[at].kind == Kind::kNewline)) ++at;
-  return at;
-}
-
 void ExpandedText::append(std::string_view text, const source::Span& span, bool exact) {
   if (text.empty()) return;
   const auto continues_last = [&](const Segment& last) {
@@ -89,8 +81,8 @@ source::Span ExpandedText::span_of(std::size_t begin, std::size_t end) const {
   return end > begin + 1 ? source::join(first, span_at(end - 1)) : first;
 }
 
-std::vector<Token> split_tokens(std::string_view text, const source::Span& span) {
-  std::vector<Token> tokens;
+PreprocessorTokens split_tokens(std::string_view text, const source::Span& span) {
+  PreprocessorTokens tokens;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = end_of_token(text, at);
     source::Span place = span;
@@ -103,11 +95,13 @@ std::vector<Token> split_tokens(std::string_view text, const source::Span& span)
 }
 
 Preprocessor::Preprocessor(source::SourceManager& sources, source::Diagnostics& diagnostics, std::vector<std::string> include_dirs)
-    : sources_(sources), diagnostics_(diagnostics), include_dirs_(std::move(include_dirs)) {}
+    : sources_(sources), diagnostics_(diagnostics), include_dirs_(std::move(include_dirs)), macros_(sources, diagnostics) {}
 
 ExpandedText Preprocessor::run(std::int32_t file) {
   ExpandedText out;
   out_ = &out;
+  include_count_ = 0;
+  includes_stopped_ = false;
   run_file(file);
   out_ = nullptr;
   return out;
@@ -117,7 +111,9 @@ void Preprocessor::define(const std::string& name, const std::string& text) {
   const std::int32_t file = sources_.add_file("<command line>", name + " " + (text.empty() ? "1" : text));
   const std::string& whole = sources_.file(file).text;
   const auto size = static_cast<std::uint32_t>(whole.size());
-  define_directive(split_tokens(whole, {file, 0, size, -1}), 0, {file, 0, size, -1});
+  const Tokens line = split_tokens(whole, {file, 0, size, -1});
+  if (recording_) recorded_.push_back({SourceLine::Kind::kDefinition, split_tokens(sources_.file(sources_.add_file("<command line>", "#define " + whole + "\n")).text, {}), file});
+  define_directive(line, 0, {file, 0, size, -1});
 }
 
 void Preprocessor::run_file(std::int32_t file) {
@@ -125,11 +121,16 @@ void Preprocessor::run_file(std::int32_t file) {
   const std::string& text = sources_.file(file).text;
   std::size_t cursor = text.starts_with("\xef\xbb\xbf") ? 3 : 0;
   const bool turbo_before = std::exchange(turbo_file_, is_turbo_text(text));
+  record(SourceLine::Kind::kFileBegins, {}, file);
   while (cursor < text.size()) {
     Tokens line = next_line(file, cursor);
     if (!take_directive(line) && is_active()) emit_line(std::move(line), file, cursor);
     else out_->append("\n", {file, static_cast<std::uint32_t>(cursor - 1), static_cast<std::uint32_t>(cursor), -1}, true);
+    if (out_->text().size() <= kMaxExpandedBytes) continue;
+    diagnostics_.error("PM1012", {file, static_cast<std::uint32_t>(cursor - 1), static_cast<std::uint32_t>(cursor), -1}, fmt::format("this file expands to more than {} MiB of text", kMaxExpandedBytes >> 20));
+    break;
   }
+  record(SourceLine::Kind::kFileEnds, {}, file);
   while (conditionals_.size() > open_conditionals) {
     diagnostics_.error("PM1007", conditionals_.back().span, "#if without #endif");
     conditionals_.pop_back();
@@ -226,111 +227,20 @@ void Preprocessor::check_swallowed_program(std::string_view comment, const sourc
   warning.fix = source::FixIt{{span.file, span.begin + static_cast<std::uint32_t>(stars), span.begin + static_cast<std::uint32_t>(stars), -1}, "/"};
 }
 
-/// A macro call whose arguments go on over the end of the line.
-bool Preprocessor::needs_next_line(const Tokens& line) const {
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i].kind != Kind::kIdentifier) continue;
-    const auto macro = macros_.find(line[i].text);
-    if (macro == macros_.end() || !macro->second.function_like) continue;
-    std::size_t at = skip_blanks(line, i + 1);
-    if (at < line.size() && line[at].text == "(" && !read_arguments(line, at)) return true;
-  }
-  return false;
-}
-
 void Preprocessor::emit_line(Tokens line, std::int32_t file, std::size_t& cursor) {
   constexpr int kMaxCallLines = 200;
   const std::size_t end = sources_.file(file).text.size();
-  for (int lines = 0; cursor < end && lines < kMaxCallLines && needs_next_line(line); ++lines) {
+  for (int lines = 0; cursor < end && lines < kMaxCallLines && macros_.needs_next_line(line); ++lines) {
     const Tokens more = next_line(file, cursor);
-    line.insert(line.end(), more.begin(), more.end());
+    if (!take_directive(more) && is_active()) line.insert(line.end(), more.begin(), more.end());
   }
-  Tokens expanded;
-  std::vector<const Macro*> active;
-  produced_ = 0;
-  expand(line, active, expanded);
-  for (const Token& token : expanded) out_->append(token.text, token.span, token.span.expansion < 0 && token.text.size() == token.span.end - token.span.begin);
+  record(SourceLine::Kind::kText, line, file);
+  for (const PreprocessorToken& token : macros_.expand(line))
+    out_->append(token.text, token.span, token.span.expansion < 0 && token.text.size() == token.span.end - token.span.begin);
 }
 
-void Preprocessor::expand(const Tokens& in, std::vector<const Macro*>& active, Tokens& out) {
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const Token& token = in[i];
-    const auto known = token.kind == Kind::kIdentifier ? macros_.find(token.text) : macros_.end();
-    const bool usable = known != macros_.end() && std::find(active.begin(), active.end(), &known->second) == active.end();
-    if (!usable || active.size() > kMaxExpansionDepth || produced_ > kMaxProducedTokens) {
-      out.push_back(token);
-      continue;
-    }
-    i = expand_call(in, i, known->second, active, out);
-    if (produced_ > kMaxProducedTokens) diagnostics_.error("PM1012", token.span, fmt::format("macro '{}' expands to too much text", token.text));
-  }
-}
-
-PreprocessorToken Preprocessor::from_macro(const Token& token, const Macro& macro, const source::Span& use) {
-  Token made = token;
-  made.span = use;
-  made.span.expansion = sources_.add_expansion(macro.name, token.span);
-  ++produced_;
-  return made;
-}
-
-/// Arguments of a macro call; at stands on the opening parenthesis and ends behind the closing one. nullopt: not closed.
-std::optional<std::vector<std::vector<PreprocessorToken>>> Preprocessor::read_arguments(const Tokens& in, std::size_t& at) const {
-  std::vector<Tokens> arguments(1);
-  int depth = 1;
-  for (++at; at < in.size(); ++at) {
-    const std::string_view text = in[at].text;
-    if (text == "(") ++depth;
-    if (text == ")" && --depth == 0) return ++at, arguments;
-    if (text == "," && depth == 1) arguments.emplace_back();
-    else if (in[at].kind == Kind::kNewline) arguments.back().push_back({Kind::kBlank, " ", in[at].span});
-    else arguments.back().push_back(in[at]);
-  }
-  return std::nullopt;
-}
-
-/// Expands the macro at in[at]; returns the index of the last token used up.
-std::size_t Preprocessor::expand_call(const Tokens& in, std::size_t at, const Macro& macro, std::vector<const Macro*>& active, Tokens& out) {
-  const source::Span use = in[at].span;
-  std::size_t next = at + 1;
-  std::vector<Tokens> arguments;
-  if (macro.function_like) {
-    std::size_t open = skip_blanks(in, at + 1);
-    if (open >= in.size() || in[open].text != "(") return out.push_back(in[at]), at;
-    auto read = read_arguments(in, open);
-    const std::size_t wanted = std::max<std::size_t>(1, macro.parameters.size());
-    if (!read || read->size() != wanted) {
-      diagnostics_.error("PM1013", use, fmt::format("macro '{}' takes {} argument(s)", macro.name, macro.parameters.size())).notes.push_back({macro.name_span, "defined here"});
-      return out.push_back(in[at]), at;
-    }
-    if (argument_depth_ >= kMaxArgumentDepth) {
-      diagnostics_.error("PM1012", use, fmt::format("calls of macro '{}' are nested too deep in their arguments", macro.name));
-      produced_ = kMaxProducedTokens + 1;
-      return next - 1;
-    }
-    ++argument_depth_;
-    for (const Tokens& argument : *read) expand(argument, active, arguments.emplace_back());
-    --argument_depth_;
-    next = open;
-  }
-  Tokens replaced;
-  for (const Token& token : macro.body) {
-    const auto parameter = std::find(macro.parameters.begin(), macro.parameters.end(), token.text);
-    if (parameter == macro.parameters.end()) {
-      replaced.push_back(from_macro(token, macro, use));
-      continue;
-    }
-    const Tokens& argument = arguments[static_cast<std::size_t>(parameter - macro.parameters.begin())];
-    produced_ += argument.size();
-    if (produced_ <= kMaxProducedTokens) replaced.insert(replaced.end(), argument.begin(), argument.end());
-  }
-  const Token blank{Kind::kBlank, " ", use};
-  out.push_back(blank);
-  active.push_back(&macro);
-  expand(replaced, active, out);
-  active.pop_back();
-  out.push_back(blank);
-  return next - 1;
+void Preprocessor::record(SourceLine::Kind kind, const Tokens& tokens, std::int32_t file) {
+  if (recording_) recorded_.push_back({kind, tokens, file});
 }
 
 }  // namespace pmac::compiler::power_pmac

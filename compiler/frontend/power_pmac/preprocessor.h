@@ -3,12 +3,12 @@
 // the place it came from. Only '#' followed by the name of a directive begins a directive: #1j+ and #*k are motor commands.
 #pragma once
 
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "compiler/frontend/power_pmac/macro_definition.h"
+#include "compiler/frontend/power_pmac/macros.h"
 #include "compiler/source/source.h"
 
 namespace pmac::compiler::power_pmac {
@@ -29,21 +29,12 @@ class ExpandedText {
   std::vector<Segment> segments_;
 };
 
-/// A piece of a line: an identifier, a number, a string, blanks or one other character.
-struct PreprocessorToken {
-  enum class Kind : std::uint8_t { kIdentifier, kNumber, kString, kBlank, kNewline, kOther };
-  Kind kind;
-  std::string_view text;
-  source::Span span;
-};
-
-struct Macro {
-  std::string name;
-  bool function_like = false;
-  std::vector<std::string> parameters;
-  std::vector<PreprocessorToken> body;
-  source::Span name_span;
-  std::string body_text;
+/// What becomes of the lines of the load stream, for pmacc -E: text and directives that count, and where files begin and end.
+struct SourceLine {
+  enum class Kind : std::uint8_t { kText, kDefinition, kFileBegins, kFileEnds };
+  Kind kind = Kind::kText;
+  PreprocessorTokens tokens;   // without comments, macros not expanded; #define and #undef of kDefinition
+  std::int32_t file = -1;
 };
 
 class Preprocessor {
@@ -54,10 +45,14 @@ class Preprocessor {
   ExpandedText run(std::int32_t file);
   /// As -D name=text.
   void define(const std::string& name, const std::string& text);
-  const std::map<std::string, Macro, std::less<>>& macros() const { return macros_; }
+  /// Every #define of the files so far.
+  const std::vector<MacroDefinition>& definitions() const { return definitions_; }
+  /// From now on every line that counts is kept, for pmacc -E.
+  void record_lines() { recording_ = true; }
+  const std::vector<SourceLine>& recorded() const { return recorded_; }
 
  private:
-  using Tokens = std::vector<PreprocessorToken>;
+  using Tokens = PreprocessorTokens;
   struct Conditional { bool active; bool taken; bool parent_active; bool seen_else; source::Span span; };
 
   void run_file(std::int32_t file);
@@ -68,39 +63,33 @@ class Preprocessor {
   bool take_directive(const Tokens& line);
   void run_directive(std::string_view name, const Tokens& line, std::size_t first);
   void define_directive(const Tokens& line, std::size_t at, const source::Span& directive);
+  void undef_directive(const Tokens& line, std::size_t at, const source::Span& directive);
+  void line_directive(const Tokens& line, std::size_t at, const source::Span& directive);
+  std::optional<Macro> read_definition(const Tokens& line, std::size_t at, const source::Span& directive);
   bool parse_parameters(const Tokens& line, std::size_t& at, Macro& macro);
-  void store(Macro macro);
+  void list_definition(const Macro& macro, bool active);
   void include_directive(const Tokens& line, std::size_t at, const source::Span& directive);
+  void include_file(const std::string& name, const source::Span& place);
   void conditional_directive(std::string_view name, const Tokens& line, std::size_t at, const source::Span& directive);
   bool evaluate_condition(const Tokens& line, std::size_t at, const source::Span& directive);
   void emit_line(Tokens line, std::int32_t file, std::size_t& cursor);
-  bool needs_next_line(const Tokens& line) const;
-  void expand(const Tokens& in, std::vector<const Macro*>& active, Tokens& out);
-  std::size_t expand_call(const Tokens& in, std::size_t at, const Macro& macro, std::vector<const Macro*>& active, Tokens& out);
-  std::optional<std::vector<Tokens>> read_arguments(const Tokens& in, std::size_t& at) const;
-  PreprocessorToken from_macro(const PreprocessorToken& token, const Macro& macro, const source::Span& use);
+  void record(SourceLine::Kind kind, const Tokens& tokens, std::int32_t file);
   bool is_active() const { return conditionals_.empty() || conditionals_.back().active; }
   std::optional<std::int32_t> open_include(const std::string& name, const source::Span& from);
 
   source::SourceManager& sources_;
   source::Diagnostics& diagnostics_;
   std::vector<std::string> include_dirs_;
-  std::map<std::string, Macro, std::less<>> macros_;
+  MacroTable macros_;
+  std::vector<MacroDefinition> definitions_;
   std::vector<Conditional> conditionals_;
+  std::vector<SourceLine> recorded_;
+  bool recording_ = false;
   ExpandedText* out_ = nullptr;
   bool turbo_file_ = false;   // the file at hand has the comments of Turbo PMAC
   int include_depth_ = 0;
-  int argument_depth_ = 0;    // calls inside the arguments of calls, at the moment
-  std::size_t produced_ = 0;  // tokens made for the current line: stops explosive macros
+  std::size_t include_count_ = 0;
+  bool includes_stopped_ = false;  // a limit was reached and reported
 };
-
-/// Tokens of a text; comments must have been blanked before. span: place of the text.
-std::vector<PreprocessorToken> split_tokens(std::string_view text, const source::Span& span);
-
-/// Index of the first token from `at` on that is no blank.
-std::size_t skip_blanks(const std::vector<PreprocessorToken>& line, std::size_t at);
-
-/// Value of a #if expression over tokens without macros (unknown identifiers are 0), or nullopt when it is malformed.
-std::optional<long long> evaluate_if(const std::vector<PreprocessorToken>& tokens);
 
 }  // namespace pmac::compiler::power_pmac

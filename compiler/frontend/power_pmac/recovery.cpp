@@ -108,14 +108,15 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     if (index == reported_index_) return;
     reported_index_ = index;
     if (next->getType() == Parser::RIGHT_BRACE) diagnostics_.error("PM2003", tree_.span_of(*next), "this } closes nothing; remove it, or add the missing {");
-    else if (next->getType() == Parser::ELSE) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
-    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}{}", quoted(*next), hint_for_part_programs(tree_.text_of(*next))));
+    else if (next->getType() == Parser::ELSE || next->getType() == Parser::ELSE_IF) diagnostics_.error("PM2006", tree_.span_of(*next), "else without if");
+    else diagnostics_.error("PM2001", tree_.span_of(*next), fmt::format("a statement cannot begin with {}{}", quoted(*next), hint_for(tree_.text_of(*next))));
   }
 
-  /// Lines of CNC part programs that the controller does not read.
-  static std::string_view hint_for_part_programs(std::string_view begin) {
+  /// What people mean by it: lines of CNC part programs, indices.
+  static std::string_view hint_for(std::string_view begin) {
     if (begin == "%") return "; the % lines at the ends of a part program file are to be taken out";
     if (begin == "(") return "; comments of part programs stand behind // here";
+    if (begin == "[") return "; square brackets belong to structures, the computed number of a variable stands in round ones: P(P2)";
     if (begin == "/") return "; a line that can be skipped begins with cskip and the number of its flag";
     return {};
   }
@@ -127,7 +128,8 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     const auto expected = error.getExpectedTokens();
     const std::string wanted = expected.size() == 1 ? describe_token(static_cast<std::size_t>(expected.getSingleElement())) : std::string();
     const antlr4::Token* before = parser.getTokenStream()->LT(-1);
-    const bool ends_too_early = before && before->getLine() != offending->getLine();
+    const bool has_begun = before && parser.getContext()->start && before->getTokenIndex() >= parser.getContext()->start->getTokenIndex();
+    const bool ends_too_early = has_begun && before->getLine() != offending->getLine();
     if (ends_too_early) {
       const source::Span place = tree_.span_of(*before);
       const std::string text = wanted.empty() ? fmt::format("the statement is not complete behind {}", quoted(*before)) : fmt::format("expected {} at the end of the line", wanted);
@@ -166,6 +168,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
   }
 
   void report_unknown_word(const antlr4::Token& token) {
+    reported_index_ = static_cast<std::ptrdiff_t>(token.getTokenIndex());
     const std::string_view word = tree_.text_of(token);
     std::vector<std::string_view> candidates = keyword_names();
     for (const std::string& name : names_.global) candidates.push_back(name);

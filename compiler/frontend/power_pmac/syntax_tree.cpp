@@ -15,7 +15,34 @@ std::string as_ascii(std::string text) {
   return text;
 }
 
+class AmbiguityListener : public antlr4::BaseErrorListener {
+ public:
+  explicit AmbiguityListener(std::vector<std::string>& found) : found_(found) {}
+  void reportAmbiguity(antlr4::Parser* parser, const antlr4::dfa::DFA& dfa, std::size_t start, std::size_t, bool, const antlrcpp::BitSet&,
+                       antlr4::atn::ATNConfigSet*) override {
+    const std::size_t rule = dfa.atnStartState->ruleIndex;
+    found_.push_back(std::to_string(parser->getTokenStream()->get(start)->getLine()) + ": " + parser->getRuleNames()[rule]);
+  }
+
+ private:
+  std::vector<std::string>& found_;
+};
+
 }  // namespace
+
+std::vector<std::string> find_ambiguities(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics) {
+  const auto tree = lex(std::move(expanded), names);
+  std::vector<std::string> found;
+  if (!within_limits(*tree, diagnostics)) return found;
+  grammar::PowerPmacParser parser(tree->tokens.get());
+  AmbiguityListener listener(found);
+  parser.removeErrorListeners();
+  parser.addErrorListener(&listener);
+  parser.setErrorHandler(make_recovery(*tree, names, diagnostics));
+  parser.getInterpreter<antlr4::atn::ParserATNSimulator>()->setPredictionMode(antlr4::atn::PredictionMode::LL_EXACT_AMBIG_DETECTION);
+  parser.file();
+  return found;
+}
 
 source::Span SyntaxTree::span_of(const antlr4::Token& token) const {
   const std::size_t size = expanded.text().size();

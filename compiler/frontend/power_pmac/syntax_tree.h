@@ -5,6 +5,8 @@
 #include <PowerPmacParser.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "compiler/frontend/power_pmac/preprocessor.h"
 #include "compiler/frontend/power_pmac/word_lexer.h"
@@ -36,6 +38,9 @@ std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names, sou
 
 /// Reports every syntax error to diagnostics; the tree then has gaps (rules with an exception).
 std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics);
+
+/// Parses with full-context prediction; every ambiguity is one text "line: rule".
+std::vector<std::string> find_ambiguities(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics);
 
 /// Finds nesting that would be too deep for the parser's stack. False: reported, do not parse.
 bool within_limits(SyntaxTree& tree, source::Diagnostics& diagnostics);

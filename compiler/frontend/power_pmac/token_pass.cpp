@@ -1,10 +1,11 @@
 // What lines mean, told to the parser by tokens. The lexer's tokens go through this pass once:
 //   - JOIN is put between the words of one motion line (ta25 F200 X5 Y6), so that a word on the next line begins a statement;
 //   - every word behind a code letter or call on its line becomes LINE_WORD (G83 X1 P2, call 500 X1 Y2), so do P, Q and L behind axis words;
-//   - LINE_END is put behind a line with cexec or cskip, which act on the rest of their line;
+//   - LINE_END is put behind a line with cexec, cskip or cx, which act on the rest of their line;
 //   - C, I and R become AXIS, VECTOR and RADIUS where they are words of a move and not variables, M and D become CODE likewise;
 //     what they are shows by the assignment operator behind their number;
 //   - the words of normal and pset get types of their own;
+//   - an else that an if follows becomes ELSE_IF;
 //   - an operator that begins a line, outside parentheses and not after another operator, is no binary operator: & addresses a
 //     coordinate system, < > % are commands, everything else cannot stand there; nor can a parenthesis, except behind if and its kind.
 #include "compiler/frontend/power_pmac/syntax_tree.h"
@@ -56,8 +57,11 @@ class TokenPass {
     const std::size_t type = in_type_ = in_[at_]->getType();
     const bool new_line = in_[at_]->getLine() != before_line_;
     end_line(type, new_line);
+    if (type == T::ELSE && at_ + 1 < in_.size() && in_[at_ + 1]->getType() == T::IF) set_type(T::ELSE_IF);
     if (type == T::OPEN) in_buffer_ = true;
     if (type == T::CLOSE) in_buffer_ = false;
+    if (at_once_line_ != 0 && in_[at_]->getLine() != at_once_line_) in_buffer_ = false, at_once_line_ = 0;
+    if (type == T::CX && !in_buffer_) in_buffer_ = true, at_once_line_ = in_[at_]->getLine();
     if (type == T::LEFT_BRACE) ++braces_;
     if (type == T::RIGHT_BRACE) --braces_;
     if (type == T::OPEN || type == T::CLOSE) braces_ = 0;
@@ -69,7 +73,7 @@ class TokenPass {
     if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && depth_ > 0) --depth_;
   }
 
-  /// Puts LINE_END where the line of a cexec or cskip ends: at the line's end, outside of braces that it has opened.
+  /// Puts LINE_END where the line of a cexec, cskip or cx ends: at the line's end, outside of braces that it has opened.
   void end_line(std::size_t type, bool new_line) {
     if (open_lines_ == 0) return;
     const bool line_ends = new_line && depth_ == 0 && !operand_wanted_ && braces_ <= line_braces_;
@@ -94,7 +98,7 @@ class TokenPass {
     if (is_motion_keyword(type)) return take_motion_keyword(type);
     const bool is_code = type == T::CODE || ((type == T::LETTER_M || type == T::LETTER_D) && !assignment_follows());
     if (is_code) set_type(T::CODE);
-    if (type == T::CEXEC || type == T::CSKIP) begin_conditional_line();
+    if (type == T::CEXEC || type == T::CSKIP || type == T::CX) begin_marked_line();
     group_ = group_behind(type, is_code);
   }
 
@@ -106,7 +110,7 @@ class TokenPass {
     return names_call || is_part_of_word(type) ? group_ : Group::kNone;
   }
 
-  void begin_conditional_line() {
+  void begin_marked_line() {
     if (open_lines_ == 0) line_braces_ = braces_;
     ++open_lines_;
   }
@@ -258,6 +262,7 @@ class TokenPass {
   int depth_ = 0;
   bool operand_wanted_ = false;
   bool in_buffer_ = false;
+  std::size_t at_once_line_ = 0; // line of a cx, whose rest is read as in a buffer
   int braces_ = 0;               // open blocks
   int open_lines_ = 0;           // cexec and cskip of the line at hand
   int line_braces_ = 0;          // open blocks where the first of them stands

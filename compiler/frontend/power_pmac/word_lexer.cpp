@@ -251,7 +251,8 @@ void WordLexer::follow_declaration(std::size_t kind, std::size_t line) {
   const bool opens_parameters = kind == T::LEFT && ((last_[0] == T::NAME && (last_[1] == T::SUBPROG || (last_[1] == T::COLON && last_[2] == T::SUB))) || (last_[0] == T::NUMBER && last_[1] == T::SUBPROG && last_[2] == T::OPEN));
   if (opens_parameters) { declaring_ = Declaring::kParameters; expect_name_ = true; depth_ = 0; return; }
   if (declaring_ == Declaring::kNothing) return;
-  const bool ended_by_line = line != last_line_ && last_[0] != T::COMMA && depth_ == 0 && declaring_ != Declaring::kParameters && kind != T::NAME;
+  const bool name_wanted = last_[0] == T::COMMA || last_[0] == T::GLOBAL || last_[0] == T::CSGLOBAL || last_[0] == T::PTR || last_[0] == T::LOCAL;
+  const bool ended_by_line = line != last_line_ && !name_wanted && depth_ == 0 && declaring_ != Declaring::kParameters;
   depth_ += kind == T::LEFT ? 1 : kind == T::RIGHT ? -1 : 0;
   const bool ended = kind == T::SEMICOLON || ended_by_line || (declaring_ == Declaring::kParameters && depth_ < 0) || kind == T::CLOSE || kind == T::OPEN;
   if (ended) { declaring_ = Declaring::kNothing; expect_name_ = false; return; }
@@ -299,7 +300,11 @@ std::string describe_token(std::size_t type) {
     case T::AXIS: case T::LETTER_C: return "an axis";
     case T::STRING: return "a text in quotation marks";
     case T::VAR: case T::LETTER_M: return "a variable";
+    case T::ELSE_IF: return "'else'";
     case T::LINE_END: return "the end of the line";
+    case T::NORMAL_VECTOR: return "a vector such as K-1";
+    case T::PSET_AXIS: return "an axis with its position";
+    case T::CODE: return "a code letter";
     case antlr4::Token::EOF: return "the end of the file";
     default: return "'" + lower(vocabulary.getSymbolicName(type)) + "'";
   }

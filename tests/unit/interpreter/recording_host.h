@@ -44,7 +44,7 @@ class RecordingHost : public runtime::Host {
   }
   double element_address(Thread&, const ElementAddress& at) override { return 1000.0 * static_cast<int>(at.id) + at.index[0]; }
   Flow motion(Thread& thread, const Instruction& in, std::span<const double> registers) override {
-    log.push_back(std::string(opcode_info(in.op).text) + " " + number_text(registers[in.a]));
+    log.push_back(std::string(opcode_info(in.op).text) + " " + number_text(in.a < registers.size() ? registers[in.a] : 0));  // a may mean nothing, as in block.end
     if (stops_thread) thread.stop();
     return answer;
   }

@@ -1,0 +1,135 @@
+#include "compiler/tool/fmt.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "compiler/source/format.h"
+#include "compiler/style/style.h"
+#include "compiler/tool/inputs.h"
+#include "compiler/tool/options.h"
+#include "compiler/tool/project_names.h"
+
+namespace pmac::pmacc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples = R"(Examples:
+  pmacc fmt oval.pmc                  rewrite the file in place
+  pmacc fmt --check *.pmc *.plc       name the files that are not formatted, exit code 1 if there are any
+  pmacc fmt --diff oval.pmc           show what would change, change nothing
+  pmacc fmt - < oval.pmc              standard input to standard output
+
+Text between the comments // pmacc: fmt off and // pmacc: fmt on is left alone.
+The rules: docs/fmt.md)";
+
+struct FmtArguments {
+  std::vector<std::string> files;
+  style::Options style;
+  bool check = false, diff = false, to_stdout = false;
+};
+
+/// What became of a file.
+enum class Outcome { kSame, kChanged, kRefused };
+
+/// Under another name first, so that the file is whole at every moment; it keeps its permissions, and links stay links.
+void replace_file(const std::string& name, const std::string& text) {
+  std::error_code error;
+  const fs::path target = fs::canonical(name, error);
+  if (error) throw UsageError(fmt::format("cannot write {}", name));
+  const fs::path temporary = target.string() + fmt::format(".{}.tmp", ::getpid());
+  std::ofstream stream(temporary, std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (stream) fs::permissions(temporary, fs::status(target).permissions(), error);
+  if (stream && !error) fs::rename(temporary, target, error);
+  if (stream && !error) return;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw UsageError(fmt::format("cannot write {}", name));
+}
+
+void print_problems(const std::string& name, const std::string& text, const std::vector<style::Problem>& problems) {
+  source::SourceManager sources;
+  const std::int32_t file = sources.add_file(name, text);
+  const bool color = std::getenv("NO_COLOR") == nullptr && ::isatty(STDERR_FILENO) != 0;
+  for (const style::Problem& problem : problems) {
+    source::Diagnostic diagnostic;
+    diagnostic.code = problem.code;
+    diagnostic.span = {file, static_cast<std::uint32_t>(problem.offset), static_cast<std::uint32_t>(problem.offset + problem.length), -1};
+    diagnostic.message = problem.message;
+    std::cerr << source::format_text(sources, diagnostic, color);
+  }
+}
+
+Outcome format_file(const std::string& name, ProjectNames& project, const FmtArguments& arguments) {
+  std::error_code ignored;
+  if (fs::is_directory(name, ignored)) throw UsageError(fmt::format("{0} is a directory; name the files, for example {0}/*.pmc", name));
+  const std::string text = read_file(name);
+  const std::string shown = name == "-" ? "<stdin>" : name;
+  const style::Formatted formatted = style::format(text, shown, project.of(name == "-" ? "stdin" : name, text), arguments.style);
+  const bool refused = !formatted.problems.empty();
+  if (refused) {
+    print_problems(shown, text, formatted.problems);
+    std::cerr << fmt::format("{}: not formatted\n", shown);
+  }
+  const std::string& result = refused ? text : formatted.text;
+  if (arguments.diff) std::cout << style::unified_diff(shown, text, result);
+  else if (!arguments.check && (name == "-" || arguments.to_stdout)) std::cout << result;
+  else if (!arguments.check && result != text) replace_file(name, result);
+  if (refused) return Outcome::kRefused;
+  return result == text ? Outcome::kSame : Outcome::kChanged;
+}
+
+int format_files(const FmtArguments& arguments) {
+  ProjectNames project;
+  int exit_code = kOk;
+  for (const std::string& name : arguments.files) {
+    try {
+      const Outcome outcome = format_file(name, project, arguments);
+      if (outcome == Outcome::kRefused) exit_code = std::max(exit_code, kUserError);
+      if (outcome == Outcome::kChanged && arguments.check) {
+        if (!arguments.diff) std::cout << (name == "-" ? "<stdin>" : name) << "\n";
+        exit_code = std::max(exit_code, kUserError);
+      }
+    } catch (const UsageError& error) {
+      std::cerr << "pmacc fmt: " << error.what() << "\n";
+      exit_code = kUsage;
+    }
+  }
+  std::cout << std::flush;
+  if (!std::cout) throw UsageError("cannot write the output");
+  return exit_code;
+}
+
+void declare_options(CLI::App& app, FmtArguments& arguments) {
+  app.add_option("files", arguments.files, "files to rewrite in place; - reads standard input and writes standard output")->required();
+  app.add_flag("--check", arguments.check, "change nothing; list the files that would change, and exit with 1 if there are any");
+  app.add_flag("--diff", arguments.diff, "change nothing; print the changes as a unified diff");
+  app.add_flag("--stdout", arguments.to_stdout, "write to standard output instead of the files");
+  app.add_option("--indent", arguments.style.indent, "blanks a level")->type_name("N")->check(CLI::Range(1, 16))->capture_default_str();
+  app.add_flag("--indent-buffers", arguments.style.indent_buffers, "what stands between open and close goes one level in");
+  app.footer(kExamples);
+}
+
+}  // namespace
+
+int run_fmt(int argc, char** argv) {
+  FmtArguments arguments;
+  CLI::App app{"Formats Power PMAC script: indentation, blanks, letter case, comments in columns. The program stays the same.", "pmacc fmt"};
+  declare_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  return format_files(arguments);
+}
+
+}  // namespace pmac::pmacc
