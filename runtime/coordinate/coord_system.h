@@ -69,7 +69,6 @@ class CoordSystem {
   /// open rotary: adds lines to program 0 of the coordinate system. One that waits for lines goes on with them.
   std::string append_rotary(ProgramHandle lines, double time_ms);
   void clear_rotary() { rotary_.clear(); }
-  void clear_rotary() { rotary_.clear(); }
   /// One move, dwell or delay; a program that executes is paused.
   std::string step(double time_ms);
   /// Finishes what is calculated and waits at a programmed point.
