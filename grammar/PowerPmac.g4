@@ -234,7 +234,7 @@ online
   | DEFINE LOOKAHEAD NUMBER (',' NUMBER)?
   | DELETE LOOKAHEAD
   | kind=(DEFINE | DELETE) ROTARY NUMBER?
-  | CLEAR ({sameLine()}? kind=(PROG | PLC | SUBPROG) bufferName)?
+  | CLEAR ({sameLine()}? (kind=(PROG | PLC | SUBPROG) bufferName | NAME NAME))?
   | CX (statement | ';')* LINE_END
   | COMMAND
   | ON_B ({sameLine()}? programName)?

@@ -1,6 +1,7 @@
 // What a program reaches outside its registers: variables through pointers, elements, motion, commands. Each call knows its runner.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
 #include "compiler/bytecode/operators.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
 #include "runtime/value_text.h"
 
@@ -77,8 +79,9 @@ class MachineHost : public Host {
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers) override {
     Runner& runner = Runner::of(thread);
     if (runner.kind == RunnerKind::kMotionProgram) return s_.coord(runner.number).motion(thread, instruction, registers);
+    if (runner.kind == RunnerKind::kPlc) return plc_motion(thread, instruction, registers);
     if (is_block_word(instruction.op))
-      return fault(thread, FaultKind::kNotSimulated, "axis moves, dwells and delays are simulated in motion programs only");
+      return fault(thread, FaultKind::kNotSimulated, "axis moves, dwells and delays are simulated in motion and PLC programs only");
     return s_.coord(thread.coord).motion(thread, instruction, registers);
   }
 
@@ -141,6 +144,22 @@ class MachineHost : public Host {
   static Flow fault(Thread& thread, FaultKind kind, std::string detail) {
     thread.set_host_fault({kind, thread.source(), std::move(detail)});
     return Flow::kFault;
+  }
+
+  /// Axis moves of a PLC program are rapid moves that it does not wait for; dwell and delay do not make it wait. User's Manual p687-688.
+  Flow plc_motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers) {
+    OpenBlock& block = s_.plcs[static_cast<std::size_t>(Runner::of(thread).number)].block;
+    switch (instruction.op) {
+      case Opcode::kAxisWord:
+        block.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), registers[instruction.a]);
+        return Flow::kContinue;
+      case Opcode::kBlockEnd: return s_.coord(thread.coord).plc_move(thread, std::exchange(block, {}));
+      case Opcode::kDwell:
+      case Opcode::kDelay:
+        s_.warn(thread.source(), "dwell and delay do not wait in a PLC program; count down Sys.CdTimer[] or compare Sys.Time");
+        return Flow::kContinue;
+      default: return s_.coord(thread.coord).motion(thread, instruction, registers);
+    }
   }
 
   double read_field(Thread& thread, const PointerEntry& pointer) {
@@ -238,6 +257,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     default: break;
   }
   s_.elements.assign(a, value);
+  if (a.id == ElementId::kSimMotorTriggerPos) trigger_moved(s_, s_.motors[a.index[0]]);
   return Flow::kContinue;
 }
 

@@ -28,6 +28,8 @@ namespace pmac::runtime {
 struct Plc {
   std::unique_ptr<Runner> runner;
   bool active = false, running = false;
+  bool single_scan = false;              // step: paused again after this one
+  OpenBlock block;                       // the move block that its scan is collecting
 };
 
 /// A line of commands waiting for its time.
@@ -162,6 +164,10 @@ std::string read_axes(Machine::State& state, int coord, bytecode::ControlVerb ve
 
 /// Value of a status element at the present time, or of a stored one (status.cpp).
 double read_element_value(Machine::State& state, Runner& runner, const ElementAddress& address);
+
+/// Answers to #n? and &n?: two words in hex. Bits that the simulation does not compute are 0. Layout: public drivers.
+std::string motor_status_words(Machine::State& state, const Motor& motor);
+std::string coord_status_words(Machine::State& state, int coord);
 
 std::unique_ptr<Host> make_host(Machine::State& state);
 

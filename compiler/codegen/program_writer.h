@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "compiler/codegen/tables.h"
@@ -131,6 +132,7 @@ class ProgramWriter {
   Register highest_ = 0;
   std::int64_t outgoing_count_ = 0;
   std::size_t first_program_ = 0;
+  std::optional<double> addressed_coord_;  // by the load script so far, where it is a constant
   source::Span span_;        // of the statement being written
 };
 

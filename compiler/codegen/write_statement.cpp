@@ -329,7 +329,14 @@ void ProgramWriter::write(const ir::Send& node, const source::Span&) {
   format_values(pointers(node.values));
   emit_imm(Opcode::kSend, static_cast<Register>(node.port), tables_.string(node.text));
 }
-void ProgramWriter::write(const ir::AddressCoord& node, const source::Span&) { emit_imm(Opcode::kAddressCoord, value(*node.number), 0); }
+
+/// &1 that is addressed already needs no code: it stands before every axis definition in what pmacc -E prints.
+void ProgramWriter::write(const ir::AddressCoord& node, const source::Span&) {
+  const auto number = ir::constant_value(*node.number);
+  if (number && addressed_coord_ == number) return;
+  addressed_coord_ = number;
+  emit_imm(Opcode::kAddressCoord, value(*node.number), 0);
+}
 void ProgramWriter::write(const ir::AddressMotor& node, const source::Span&) { emit_imm(Opcode::kAddressMotor, value(*node.number), 0); }
 
 void ProgramWriter::write(const ir::DefineAxis& node, const source::Span&) {

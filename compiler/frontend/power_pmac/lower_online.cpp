@@ -103,7 +103,9 @@ void Lowering::lower_at_once(P::OnlineContext* online, ir::Unit& unit) {
 
 /// clear prog 5 makes the buffer empty, like open prog 5 close.
 void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
-  if (online->exception || !online->kind || !online->bufferName()) return;
+  if (online->exception) return;
+  if (!online->NAME().empty()) return lower_clear_all(online, unit);
+  if (!online->kind || !online->bufferName()) return;
   ir::Buffer buffer;
   buffer.span = buffer.close_span = span_of(online);
   buffer.kind = online->kind->getType() == P::PLC ? ProgramKind::kPlc : online->kind->getType() == P::SUBPROG ? ProgramKind::kSubprog : ProgramKind::kProg;
@@ -111,6 +113,25 @@ void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
   else buffer.number = whole_number(token_of(online->bufferName()->NUMBER()), buffer.kind == ProgramKind::kPlc ? bytecode::kMaxPlcs - 1 : 4294967295).value_or(0);
   unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
   unit.buffers.push_back(std::move(buffer));
+}
+
+/// clear all buffers: empties the buffers that the file opened before it.
+void Lowering::lower_clear_all(P::OnlineContext* online, ir::Unit& unit) {
+  const bool known = online->NAME().size() == 2 && lower_case(text_of(token_of(online->NAME(0)))) == "all" && lower_case(text_of(token_of(online->NAME(1)))) == "buffers";
+  if (!known) {
+    diagnostics_.error("PM2001", span_of(online), "clear takes a buffer (clear prog 5), or all buffers");
+    return;
+  }
+  unit.clear_all = span_of(online);
+  for (std::size_t i = unit.buffers.size(); i-- > 0;) {
+    ir::Buffer buffer;
+    buffer.span = buffer.close_span = unit.clear_all;
+    buffer.kind = unit.buffers[i].kind;
+    buffer.name = unit.buffers[i].name;
+    buffer.number = unit.buffers[i].number;
+    unit.load.push_back(ir::make_stmt(buffer.span, ir::OpenBuffer{unit.buffers.size()}));
+    unit.buffers.push_back(std::move(buffer));
+  }
 }
 
 // --- on-line commands ---------------------------------------------------------------------------------------------------------

@@ -95,6 +95,7 @@ class Lowering {
   void lower_at_once(P::OnlineContext* online, ir::Unit& unit);
   void lower_buffer(P::BufferContext* buffer, ir::Unit& unit);
   void lower_clear(P::OnlineContext* online, ir::Unit& unit);
+  void lower_clear_all(P::OnlineContext* online, ir::Unit& unit);
   void lower_open_header(P::OpenHeaderContext* header, ir::Buffer& buffer);
   std::vector<ir::Parameter> lower_parameters(P::ParametersContext* parameters);
   void lower_online(P::OnlineContext* online, ir::Body& out);
