@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <vector>
 
@@ -30,6 +31,17 @@ std::vector<std::string> replies(const std::string& out) {
     reply.clear();
   }
   CHECK(reply.empty());
+  return result;
+}
+
+/// The numbers of a recording, without its heading.
+std::vector<double> numbers(const std::string& csv) {
+  std::vector<double> result;
+  std::istringstream cells(csv.substr(csv.find('\n') + 1));
+  for (std::string row; std::getline(cells, row);) {
+    std::istringstream columns(row);
+    for (std::string cell; std::getline(columns, cell, ',');) result.push_back(std::stod(cell));
+  }
   return result;
 }
 
@@ -101,10 +113,13 @@ TEST_CASE("console: the recording goes on through the session and behind it", "[
   session(w, "#1j=1000\n#1p\n", "--record run.csv");
   w.write("set_up2.pmc", std::string(kSetUp) + "#1j=1000\n");
   CHECK(w.run("pmac-run", "set_up2.pmc --record straight.csv").code == 0);
-  const std::string piecewise = w.read("run.csv"), straight = w.read("straight.csv");
-  const std::size_t common = std::min(piecewise.size(), straight.size());
-  CHECK(common > 10000);
-  CHECK(piecewise.substr(0, common) == straight.substr(0, common));
+  // the times of samples are summed from where a piece begins: equal but for the last digits
+  const auto piecewise = numbers(w.read("run.csv")), straight = numbers(w.read("straight.csv"));
+  REQUIRE(piecewise.size() > 1000);
+  REQUIRE(piecewise.size() == straight.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < straight.size(); ++i) worst = std::max(worst, std::abs(piecewise[i] - straight[i]));
+  CHECK(worst < 1e-9);
 }
 
 TEST_CASE("console: input may end anywhere", "[tools]") {
