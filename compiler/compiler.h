@@ -17,6 +17,7 @@
 
 #include "compiler/bytecode/bytecode.h"
 #include "compiler/source/source.h"
+#include "compiler/source/warning_control.h"
 
 namespace pmac::compiler {
 
@@ -31,7 +32,7 @@ struct VariableStarts { std::int64_t p = 8192, q = 1024, m = 8192; };
 struct Options {
   std::vector<std::string> include_dirs;
   std::vector<std::pair<std::string, std::string>> defines;  // -D name[=text]
-  bool extra_warnings = false;                               // -Wextra: elements that are stored only, ...
+  source::WarningOptions warnings;                           // -W...
 };
 
 class Session {

@@ -40,18 +40,20 @@ Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 
 std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& files, bool online) {
+  const auto first_file = static_cast<std::int32_t>(sources.file_count());
   std::vector<ir::Unit> units;
   for (const InputFile& file : files) units.push_back(frontend.read(file.name, file.text));
   for (const std::string& name : frontend.known_names()) project.lexed_names.insert(name);
   for (const ir::Unit& unit : units) sema::reserve_numbers(unit, project);
   for (ir::Unit& unit : units) sema::declare(unit, project, diagnostics);
-  const sema::Settings settings{options.extra_warnings, online};
+  const sema::Settings settings{online};
   for (ir::Unit& unit : units) sema::check(unit, project, settings, diagnostics);
   if (!online) sema::check_served_axes(units, project, diagnostics);
   for (const ir::Unit& unit : units) {
     if (unit.clear_all.valid() && has_programs) diagnostics.warning("PM5002", unit.clear_all, "clear all buffers empties the programs of this file; those that were loaded before it stay");
     has_programs = has_programs || !unit.buffers.empty();
   }
+  if (!online) warning_control.report_comments(first_file, !diagnostics.has_errors(), diagnostics);
   return units;
 }
 
@@ -68,12 +70,11 @@ std::optional<bytecode::Module> Session::compile(const std::vector<InputFile>& f
 }
 
 std::optional<bytecode::Module> Session::compile_online(std::string_view text, std::string_view name) {
-  source::Diagnostics earlier = std::move(state_->diagnostics);
-  state_->diagnostics = source::Diagnostics();
+  std::vector<source::Diagnostic> earlier = state_->diagnostics.take();
   std::optional<bytecode::Module> module = state_->generate(state_->analyse({{std::string(name), std::string(text)}}, true));
   const bool in_buffer = text.find("open") != std::string_view::npos;
   std::vector<source::Diagnostic> found = state_->diagnostics.take();
-  state_->diagnostics = std::move(earlier);
+  for (source::Diagnostic& diagnostic : earlier) state_->diagnostics.report(std::move(diagnostic));
   for (source::Diagnostic& diagnostic : found) {
     if (diagnostic.severity == source::Severity::kError) diagnostic.message = fmt::format("{}: {}", online_error(diagnostic, in_buffer), diagnostic.message);
     state_->diagnostics.report(std::move(diagnostic));

@@ -9,7 +9,8 @@
 namespace pmac::compiler {
 
 struct Session::State {
-  explicit State(Options o) : options(std::move(o)), frontend(sources, diagnostics, options.include_dirs) {
+  explicit State(Options o) : options(std::move(o)), warning_control(sources, options.warnings), frontend(sources, diagnostics, options.include_dirs) {
+    diagnostics.set_filter(&warning_control);
     for (const auto& [name, text] : options.defines) frontend.define(name, text);
   }
 
@@ -20,6 +21,7 @@ struct Session::State {
 
   Options options;
   source::SourceManager sources;
+  source::WarningControl warning_control;
   source::Diagnostics diagnostics;
   power_pmac::Frontend frontend;
   sema::Project project;

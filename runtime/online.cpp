@@ -261,6 +261,15 @@ Flow motor_verb(const Call& call) {
   return Flow::kContinue;
 }
 
+/// Stands at the top of the program with locals 0.
+void begin_plc(const Call& call, Plc& plc, int number, const ProgramHandle& program) {
+  plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
+  plc.runner->thread.ends_scans = true;
+  plc.runner->thread.begin(program);
+  plc.block = {};
+  plc.active = true;
+}
+
 Flow plc_verb(const Call& call) {
   const double given = call.argument(0);
   if (!(given >= 0 && given < bytecode::kMaxPlcs)) {
@@ -270,7 +279,7 @@ Flow plc_verb(const Call& call) {
   const int number = static_cast<int>(given);
   Plc& plc = call.s.plcs[static_cast<std::size_t>(number)];
   const auto buffer = call.s.plc_programs.find(static_cast<std::uint32_t>(number));
-  const bool starts = call.verb == ControlVerb::kEnablePlc || call.verb == ControlVerb::kResumePlc;
+  const bool starts = call.verb == ControlVerb::kEnablePlc || call.verb == ControlVerb::kResumePlc || call.verb == ControlVerb::kStepPlc;
   if (starts && buffer == call.s.plc_programs.end()) {
     call.refusal = fmt::format("error #22: PROGRAM NOT IN BUFFER: there is no PLC program {}", number);
     return Flow::kContinue;
@@ -278,21 +287,23 @@ Flow plc_verb(const Call& call) {
   switch (call.verb) {
     case ControlVerb::kEnablePlc:
       if (plc.runner.get() == &call.runner) break;  // enabling itself changes nothing
-      plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
-      plc.runner->thread.ends_scans = true;
-      plc.runner->thread.begin(buffer->second);
-      plc.block = {};
-      plc.active = plc.running = true;
+      begin_plc(call, plc, number, buffer->second);
+      plc.running = true;
       break;
     case ControlVerb::kDisablePlc: plc.active = plc.running = false; break;
     case ControlVerb::kPausePlc: plc.running = false; break;
     case ControlVerb::kResumePlc:
+      if (!plc.active) call.refusal = fmt::format("error #39: NOT READY TO RUN: PLC {} is not enabled", number);
       plc.running = plc.active;
-      plc.single_scan = false;
       break;
     case ControlVerb::kStepPlc:
-      if (!plc.active) call.refusal = fmt::format("error #39: NOT READY TO RUN: PLC program {} is not active; enable and pause it first", number);
-      plc.running = plc.single_scan = plc.active;
+      if (call.runner.kind == RunnerKind::kPlc) {
+        call.refusal = "error #21: ILLEGAL PARAMETER: PLC programs are stepped on line and from motion programs";
+        break;
+      }
+      if (!plc.active) begin_plc(call, plc, number, buffer->second);
+      plc.running = false;
+      call.s.step_plc(number);
       break;
     default: return not_simulated(call);
   }

@@ -115,13 +115,19 @@ void Machine::State::sample_to(double time_ms) {
 }
 
 void Machine::State::scan(int number, double) {
-  Plc& plc = plcs[static_cast<std::size_t>(number)];
-  Thread& thread = plc.runner->thread;
+  Thread& thread = plcs[static_cast<std::size_t>(number)].runner->thread;
   thread.reset_jump_backs();
-  const RunResult result = thread.run(*host, kPlcBudget, 1);
+  finish_scan(number, thread.run(*host, kPlcBudget, 1));
+  execute_queued_commands();
+}
+
+void Machine::State::step_plc(int number) { finish_scan(number, plcs[static_cast<std::size_t>(number)].runner->thread.run_line(*host, kPlcBudget)); }
+
+void Machine::State::finish_scan(int number, const RunResult& result) {
   instructions += result.instructions;
+  Plc& plc = plcs[static_cast<std::size_t>(number)];
   switch (result.stop) {
-    case RunStop::kEnded: thread.restart(); break;
+    case RunStop::kEnded: plc.runner->thread.restart(); break;
     case RunStop::kBudget:
     case RunStop::kJumpBack:
     case RunStop::kSuspended: break;
@@ -130,8 +136,6 @@ void Machine::State::scan(int number, double) {
       report_fault({now_ms, -1, number, *result.fault});
       break;
   }
-  if (std::exchange(plc.single_scan, false)) plc.running = false;
-  execute_queued_commands();
 }
 
 void Machine::State::scan_plcs(double time_ms) {

@@ -28,7 +28,6 @@ namespace pmac::runtime {
 struct Plc {
   std::unique_ptr<Runner> runner;
   bool active = false, running = false;
-  bool single_scan = false;              // step: paused again after this one
   OpenBlock block;                       // the move block that its scan is collecting
 };
 
@@ -142,6 +141,9 @@ struct Machine::State {
   void service(double time_ms);
   void scan_plcs(double time_ms);
   void scan(int plc, double time_ms);
+  void finish_scan(int plc, const RunResult& result);
+  /// One source line of a PLC program that is not running.
+  void step_plc(int plc);
   void update_idle(double time_ms);
   bool anything_runs() const;
 };

@@ -233,14 +233,18 @@ void Binder::report_unknown_element(const ir::Element& element, const source::Sp
   if (!project_.reported_elements.insert(lower(element.pattern)).second) return;
   std::vector<std::string_view> candidates;
   for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) candidates.push_back(bytecode::element_info(static_cast<bytecode::ElementId>(i)).name);
-  const std::string_view near = source::nearest_word(element.pattern, candidates);
-  const std::string hint = near.empty() ? std::string() : fmt::format("; did you mean {}?", near);
-  diagnostics_.error("PM3053", span, fmt::format("unknown element {}{}", element.pattern, hint));
+  const source::Guess near = source::guess_word(element.pattern, candidates);
+  const std::string hint = near.word.empty() ? std::string() : fmt::format("; did you mean {}?", near.word);
+  auto& error = diagnostics_.error("PM3053", span, fmt::format("unknown element {}{}", element.pattern, hint));
+  const std::size_t member = element.pattern.rfind('.');
+  const bool only_member_differs = member != std::string::npos && near.word.substr(0, member + 1) == std::string_view(element.pattern).substr(0, member + 1);
+  if (!only_member_differs || element.address || element.pattern.ends_with(']')) return;
+  const auto length = static_cast<std::uint32_t>(element.pattern.size() - member - 1);
+  error.fix = source::guess_fix({span.file, span.end - length, span.end, span.expansion}, {near.word.substr(member + 1), near.certain});
 }
 
 /// Once for each element, where the program relies on something that the simulation keeps without acting on it.
 void Binder::note_stored_element(const ir::Element& element, const source::Span& span) {
-  if (!settings_.extra_warnings) return;
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
   if (info.simulation != bytecode::ElementSimulation::kStored || !project_.reported_elements.insert(std::string(info.name)).second) return;
   diagnostics_.warning("PM6010", span, fmt::format("the simulation stores {} and does not act on it", info.name));
@@ -248,7 +252,6 @@ void Binder::note_stored_element(const ir::Element& element, const source::Span&
 
 /// Once for each element, where the program reads a status that stays at its default here.
 void Binder::note_uncomputed_element(const ir::Element& element, const source::Span& span) {
-  if (!settings_.extra_warnings) return;
   const bytecode::ElementInfo& info = bytecode::element_info(element.element);
   if (info.simulation != bytecode::ElementSimulation::kUnknown || !project_.reported_elements.insert(std::string(info.name)).second) return;
   diagnostics_.warning("PM6012", span, fmt::format("the simulation does not compute {}; it reads {}", info.name, info.default_value));
@@ -266,12 +269,12 @@ void Binder::report_unknown(std::string_view name, const source::Span& span, std
   for (const auto& [global, entry] : project_.names.all()) candidates.push_back(global);
   const bool is_function = what.starts_with("function");
   for (std::uint16_t i = 0; is_function && i < static_cast<std::uint16_t>(bytecode::Function::kCount); ++i) candidates.push_back(bytecode::function_info(static_cast<bytecode::Function>(i)).name);
-  const std::string_view near = other_case.empty() ? source::nearest_word(name, candidates) : other_case;
+  const source::Guess near = other_case.empty() ? source::guess_word(name, candidates) : source::Guess{other_case, true};
   std::string hint;
   if (!other_case.empty()) hint = fmt::format("; '{}' differs only in upper and lower case, which counts in names", other_case);
-  else if (!near.empty()) hint = fmt::format("; did you mean '{}'?", near);
+  else if (!near.word.empty()) hint = fmt::format("; did you mean '{}'?", near.word);
   auto& error = diagnostics_.error("PM3054", span, fmt::format("{} '{}' is not declared{}", what, name, hint));
-  if (!near.empty()) error.fix = source::FixIt{{span.file, span.begin, static_cast<std::uint32_t>(span.begin + name.size()), span.expansion}, std::string(near)};
+  if (!near.word.empty()) error.fix = source::guess_fix({span.file, span.begin, static_cast<std::uint32_t>(span.begin + name.size()), span.expansion}, near);
 }
 
 }  // namespace pmac::compiler::sema

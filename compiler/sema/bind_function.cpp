@@ -45,6 +45,11 @@ bool Binder::is_function(std::string_view name) const { return find_function(nam
 
 bool Binder::is_declared(std::string_view name) const { return locals_.contains(name) || project_.names.find(name) != nullptr; }
 
+bool Binder::is_variable(std::string_view name) const {
+  const Name* known = project_.names.find(name);
+  return locals_.contains(name) || (known && known->variable_class());
+}
+
 void Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
   const bytecode::Function function = find_function(use.name);
   if (function == bytecode::kNoFunction) {

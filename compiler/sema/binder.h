@@ -82,6 +82,7 @@ class Binder {
   // functions and texts (bind_function.cpp)
   bool is_function(std::string_view name) const;
   bool is_declared(std::string_view name) const;
+  bool is_variable(std::string_view name) const;
   void bind_function(ir::Expr& expr, ir::NameUse& use);
   void bind_arguments(bytecode::Function function, std::vector<ir::ExprPtr>& arguments, const source::Span& span);
   void bind_argument(ir::Expr& argument, char letter, std::string_view function, std::size_t number);

@@ -269,7 +269,7 @@ void Binder::bind(ir::Control& node, const source::Span&) {
     ir::ExprPtr& argument = node.arguments[i];
     if (!argument) continue;
     auto* use = std::get_if<ir::NameUse>(&argument->node);
-    if (use && is_plc_verb(node.verb)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
+    if (use && is_plc_verb(node.verb) && !is_variable(use->name)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
     else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
     else if (use && node.verb == ControlVerb::kReportPointer) bind_program_name(*argument, SymbolKind::kPointer, "pointer");
     else bind_value(*argument);

@@ -23,7 +23,7 @@ struct Project {
   std::set<std::string> lexed_names;      // names the front end saw a declaration of, even a wrong one
 };
 
-struct Settings { bool extra_warnings = false; bool online = false; };
+struct Settings { bool online = false; };
 
 /// Notes the numbers of PLC programs that have no name; call for every unit before declare(), so that no name takes one of them.
 void reserve_numbers(const ir::Unit& unit, Project& project);

@@ -68,16 +68,21 @@ std::string_view SourceManager::text(const Span& span) const {
 }
 
 Diagnostic& Diagnostics::report(Diagnostic diagnostic) {
-  if (warnings_are_errors_ && diagnostic.severity == Severity::kWarning) diagnostic.severity = Severity::kError;
+  if (filter_ && !filter_->accept(diagnostic)) {
+    ignored_ = std::move(diagnostic);
+    return ignored_;
+  }
   const bool repeated = diagnostic.span.valid() && !seen_.insert({diagnostic.span.file, diagnostic.span.begin, diagnostic.code + diagnostic.message}).second;
   const bool is_error = diagnostic.severity == Severity::kError;
-  const bool over_limit = is_error && error_count_ >= error_limit_;
+  const bool counts = is_error && !is_repetitive(diagnostic.code);
+  const bool over_limit = counts && limited_count_ >= error_limit_;
   if (repeated || over_limit) {
     dropped_count_ += over_limit && !repeated;
     ignored_ = std::move(diagnostic);
     return ignored_;
   }
   error_count_ += is_error;
+  limited_count_ += counts;
   warning_count_ += diagnostic.severity == Severity::kWarning;
   all_.push_back(std::move(diagnostic));
   return all_.back();
@@ -95,9 +100,11 @@ std::vector<Diagnostic> Diagnostics::take() {
   std::vector<Diagnostic> taken(std::make_move_iterator(all_.begin()), std::make_move_iterator(all_.end()));
   all_.clear();
   seen_.clear();
-  error_count_ = warning_count_ = dropped_count_ = 0;
+  error_count_ = warning_count_ = dropped_count_ = limited_count_ = 0;
   return taken;
 }
+
+bool is_repetitive(std::string_view code) { return code.starts_with("PM202") || code == "PM2011" || code == "PM7001"; }
 
 namespace {
 
@@ -133,6 +140,13 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
     if (distance < best_distance) best_distance = distance, best = candidate;
   }
   return best;
+}
+
+Guess guess_word(std::string_view word, const std::vector<std::string_view>& candidates) {
+  Guess guess{nearest_word(word, candidates), false};
+  if (guess.word.empty() || word.size() < 4 || edit_distance(word, guess.word) > 1) return guess;
+  guess.certain = std::none_of(candidates.begin(), candidates.end(), [&](std::string_view other) { return other != guess.word && edit_distance(word, other) <= 1; });
+  return guess;
 }
 
 }  // namespace pmac::source

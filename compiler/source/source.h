@@ -75,16 +75,35 @@ enum class Severity : std::uint8_t { kNote, kWarning, kError };
 
 struct Note { Span span; std::string message; };
 
-/// Replace the text of span; an empty span inserts.
-struct FixIt { Span span; std::string replacement; };
+/// Whether a repair keeps or restores what was certainly meant (pmacc --fix applies it), or is a guess for a person to judge.
+enum class FixSafety : std::uint8_t { kSafe, kSuggestion };
+
+struct Edit { Span span; std::string replacement; };
+
+/// Replace the text of span, an empty span inserts; and do the other edits with it: all or none.
+struct FixIt {
+  Span span;
+  std::string replacement;
+  FixSafety safety = FixSafety::kSafe;
+  std::vector<Edit> also = {};
+};
 
 struct Diagnostic {
   Severity severity = Severity::kError;
-  std::string code;     // "PM1203": never changes its meaning
+  std::string code;     // "PM2011": never changes its meaning
   Span span;
   std::string message;
   std::vector<Note> notes;
   std::optional<FixIt> fix;
+  std::string_view group = {};  // of a warning: its name, from the table of messages
+};
+
+/// Looks at each diagnostic before it is kept.
+class DiagnosticFilter {
+ public:
+  virtual ~DiagnosticFilter() = default;
+  /// False: leave it out. May change the severity and the group.
+  virtual bool accept(Diagnostic& diagnostic) = 0;
 };
 
 /// Collects diagnostics in the order they are found; drops repetitions at the same place and errors beyond the limit.
@@ -100,10 +119,10 @@ class Diagnostics {
   /// Errors that were not kept because the limit was reached.
   std::size_t dropped_count() const { return dropped_count_; }
   void set_error_limit(std::size_t limit) { error_limit_ = limit; }
-  /// From now on warnings are reported as errors.
-  void set_warnings_are_errors(bool on) { warnings_are_errors_ = on; }
+  /// Kept by the caller, and longer than this object; null: everything is given as it comes.
+  void set_filter(DiagnosticFilter* filter) { filter_ = filter; }
   const std::deque<Diagnostic>& all() const { return all_; }
-  /// Hands over what was collected and starts again with none.
+  /// Hands over what was collected and starts again with none; filter and limit stay.
   std::vector<Diagnostic> take();
 
  private:
@@ -113,11 +132,23 @@ class Diagnostics {
   std::size_t error_count_ = 0;
   std::size_t warning_count_ = 0;
   std::size_t dropped_count_ = 0;
+  std::size_t limited_count_ = 0;  // errors that count for the limit
   std::size_t error_limit_ = 100;
-  bool warnings_are_errors_ = false;
+  DiagnosticFilter* filter_ = nullptr;
 };
+
+/// Messages that files in the language of Turbo PMAC have by the hundred: they do not use up the error limit.
+bool is_repetitive(std::string_view code);
 
 /// The candidate nearest to a misspelt word, case ignored, or empty if none is near.
 std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
+
+/// A guess at a misspelt word. It is certain when it is one step away (a letter wrong, missing, too many, or two swapped, in a word
+/// of at least four letters) and no other candidate is.
+struct Guess { std::string_view word; bool certain = false; };
+Guess guess_word(std::string_view word, const std::vector<std::string_view>& candidates);
+
+/// Replace what stands at span by the guess; safe where the guess is certain.
+inline FixIt guess_fix(Span span, const Guess& guess) { return {span, std::string(guess.word), guess.certain ? FixSafety::kSafe : FixSafety::kSuggestion, {}}; }
 
 }  // namespace pmac::source

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "compiler/style/plain_lines.h"
+
 namespace pmac::style {
 namespace {
 
@@ -36,20 +38,73 @@ bool is_fragment(std::string_view code) {
   return found;
 }
 
-/// Puts the words of the code between the pieces of the outline, and notes the names that they declare.
-void merge_words(const Outline& outline, SourceText& source) {
+bool any_could_be_plain(const WordReader::Names& names) {
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) { return could_be_plain(name); });
+}
+
+/// Follows open and close in a row of pieces.
+class BufferWatch {
+ public:
+  BufferWatch(const SourceText& source) : source_(source), in_buffer_(source.in_buffer) {}
+  bool in_buffer() const { return in_buffer_; }
+  void take(const Piece& piece) {
+    if (piece.kind != PieceKind::kKeyword || piece.end - piece.begin > 5) return;
+    const std::string word = lower_case(source_.of(piece));
+    if (word == "open") in_buffer_ = true;
+    if (word == "close") in_buffer_ = false;
+  }
+
+ private:
+  const SourceText& source_;
+  bool in_buffer_;
+};
+
+/// Puts the words of the code between the pieces of the outline and those of plain lines, and notes the names that are declared.
+/// False where a plain line turns out to be none, outside of a buffer or by a name.
+bool merge_words(const std::vector<Piece>& outline, const std::string& code, const std::vector<Piece>& plain, SourceText& source) {
   WordReader::Names known = source.names.declared;
   for (const auto& [name, takes_arguments] : source.names.macros) known.insert(name);
-  WordReader reader(outline.code, known, source.in_buffer);
+  if (!plain.empty() && any_could_be_plain(known)) return false;
+  WordReader reader(code, known, source.in_buffer);
   std::vector<Piece>& pieces = source.pieces;
-  auto next = outline.pieces.begin();
+  pieces.clear();
+  pieces.reserve(outline.size() + plain.size());
+  auto next_plain = plain.begin();
+  auto next = outline.begin();
+  BufferWatch watch(source);
+  bool plain_in_buffer = true;
+  const auto add_until = [&](std::uint32_t begin) {
+    while (true) {
+      const bool has_plain = next_plain != plain.end() && next_plain->begin < begin;
+      const bool has_other = next != outline.end() && next->begin < begin;
+      if (!has_plain && !has_other) return;
+      const bool plain_first = has_plain && (!has_other || next_plain->begin < next->begin);
+      plain_in_buffer = plain_in_buffer && (!plain_first || watch.in_buffer());
+      pieces.push_back(plain_first ? *next_plain++ : *next++);
+    }
+  };
   for (Word word; reader.next(word);) {
-    for (; next != outline.pieces.end() && next->begin < word.begin; ++next) pieces.push_back(*next);
+    add_until(word.begin);
     pieces.push_back({word.begin, word.end, word.type, piece_kind(word.kind)});
+    watch.take(pieces.back());
   }
-  pieces.insert(pieces.end(), next, outline.pieces.end());
+  add_until(static_cast<std::uint32_t>(-1));
+  if (!plain_in_buffer || (!plain.empty() && any_could_be_plain(reader.declared()))) return false;
   source.names.declared.insert(reader.declared().begin(), reader.declared().end());
   source.shared = reader.shared();
+  return true;
+}
+
+/// The words of a text, in the short way where that is right.
+void read_words(const Outline& outline, PlainLines plain_lines, SourceText& source) {
+  constexpr std::size_t kLongText = 200000;
+  const bool try_plain = plain_lines == PlainLines::kAlways || (plain_lines == PlainLines::kInLongTexts && source.text.size() >= kLongText);
+  if (try_plain) {
+    std::string code = outline.code;
+    const std::vector<Piece> plain = take_plain_lines(code);
+    if (merge_words(outline.pieces, code, plain, source)) return;
+  }
+  merge_words(outline.pieces, outline.code, {}, source);
 }
 
 /// Names of open prog Name and sub: name, which no declaration lists.
@@ -105,11 +160,11 @@ void join_raw_pieces(SourceText& source) {
 
 }  // namespace
 
-SourceText read_source(std::string_view text, const Names& names) {
+SourceText read_source(std::string_view text, const Names& names, PlainLines plain_lines) {
   const Outline outline = read_outline(text);
   SourceText source{text, {}, names, {}, is_fragment(outline.code), false};
   for (const auto& [name, takes_arguments] : outline.macros) source.names.macros[name] |= takes_arguments;
-  merge_words(outline, source);
+  read_words(outline, plain_lines, source);
   source.has_directives = std::any_of(outline.pieces.begin(), outline.pieces.end(), [](const Piece& p) { return p.kind == PieceKind::kDirective; });
   note_program_names(source);
   join_raw_pieces(source);

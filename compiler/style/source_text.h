@@ -40,8 +40,11 @@ struct SourceText {
   bool spans_lines(const Piece& piece) const { return of(piece).find('\n') != std::string_view::npos; }
 };
 
+/// When to read plain lines in the short way of plain_lines.h: where it pays, or as a test wants it.
+enum class PlainLines : std::uint8_t { kInLongTexts, kAlways, kNever };
+
 /// The text outlives the result.
-SourceText read_source(std::string_view text, const Names& names);
+SourceText read_source(std::string_view text, const Names& names, PlainLines plain_lines = PlainLines::kInLongTexts);
 
 /// Pieces of everything but words, and the text with blanks in their place.
 struct Outline {

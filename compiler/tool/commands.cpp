@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iostream>
 
 #include "compiler/bytecode/object_file.h"
-#include "compiler/explain.h"
+#include "compiler/source/message.h"
+#include "compiler/tool/fix_command.h"
 #include "compiler/tool/inputs.h"
 #include "compiler/tool/report.h"
 
@@ -19,8 +19,9 @@ void print(std::string_view text) {
 }
 
 int explain(const std::string& code) {
-  const std::string text = compiler::explain(code);
-  if (text.empty()) throw UsageError(fmt::format("no message has the code {}", code));
+  const std::string text = code == "all" ? source::messages_page() : source::explain(code);
+  const std::string_view near = source::nearest_code(code);
+  if (text.empty()) throw UsageError(fmt::format("no message has the code {}{}", code, near.empty() ? "; pmacc --explain all lists them" : fmt::format("; did you mean {}?", near)));
   print(text);
   return kOk;
 }
@@ -64,22 +65,20 @@ int compile(compiler::Session& session, const Arguments& arguments, const std::v
   return kOk;
 }
 
-void set_up_diagnostics(source::Diagnostics& diagnostics, const Arguments& arguments) {
-  diagnostics.set_error_limit(arguments.error_limit);
-  diagnostics.set_warnings_are_errors(std::find(arguments.warnings.begin(), arguments.warnings.end(), "error") != arguments.warnings.end());
-}
-
 }  // namespace
 
 int run(const Arguments& arguments) {
   if (!arguments.explain.empty()) return explain(arguments.explain);
-  if (arguments.emit == "elements") {
-    print(compiler::emit_elements());
-    return kOk;
-  }
+  if (arguments.help_warnings) return print(source::list_warnings()), kOk;
+  if (arguments.emit == "elements") return print(compiler::emit_elements()), kOk;
   if (arguments.files.empty()) throw UsageError("no input files; try pmacc --help");
-  compiler::Session session(compiler_options(arguments));
-  set_up_diagnostics(session.diagnostics(), arguments);
+  const compiler::Options options = compiler_options(arguments);
+  if (arguments.fix || arguments.fix_dry_run) {
+    const int done = fix(arguments, options);
+    if (arguments.fix_dry_run) return done;
+  }
+  compiler::Session session(options);
+  set_error_limit(session, arguments);
   const std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
   if (arguments.preprocess) return preprocess(session, arguments, files);
   return arguments.emit.empty() ? compile(session, arguments, files) : emit(session, arguments, files);

@@ -47,12 +47,17 @@ std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& nam
 }
 
 void write_file(const std::string& name, std::string_view bytes) {
-  const std::string temporary = fmt::format("{}.{}.tmp", name, ::getpid());
+  std::error_code error;
+  const std::filesystem::path known = std::filesystem::canonical(name, error);  // a link keeps pointing at the file
+  const std::string target = error ? name : known.string();
+  const bool exists = !error;
+  const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
   std::ofstream stream(temporary, std::ios::binary);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
-  std::error_code error;
-  if (stream) std::filesystem::rename(temporary, name, error);
+  error.clear();
+  if (stream && exists) std::filesystem::permissions(temporary, std::filesystem::status(target).permissions(), error);
+  if (stream && !error) std::filesystem::rename(temporary, target, error);
   if (stream && !error) return;
   std::filesystem::remove(temporary, error);
   throw UsageError(fmt::format("cannot write {}", name));

@@ -1,20 +1,23 @@
 #include "compiler/tool/options.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <iostream>
 
 namespace pmac::pmacc {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
-  pmacc --check setup.cfg oval.pmc        report what is wrong, write nothing
-  pmacc setup.cfg oval.pmc -o oval.pmx    compile the files in this order to an object file
-  pmacc --emit=ir oval.pmc                show the program as the compiler understood it
-  pmacc --check MyMachine.ppproj          a project of the vendor's IDE: also its folder, or its pp_proj.ini
-  pmacc --emit=files MyMachine            list the files of a project in load order
-  pmacc --emit=elements                   list the data-structure elements that are known
-  pmacc --explain PM4001                  say more about a message
-  pmacc fmt --help                        the formatter)";
+  pmacc --check setup.cfg oval.pmc          report what is wrong, write nothing
+  pmacc setup.cfg oval.pmc -o oval.pmx      compile the files in this order to an object file
+  pmacc -Wall -Werror=array-bounds *.pmc    more warnings, and one of them as an error
+  pmacc --fix old.pmc                       repair what has one certain repair, in place
+  pmacc --diagnostics-format=sarif x.pmc    messages for code scanning, on standard error
+  pmacc --emit=ir oval.pmc                  show the program as the compiler understood it
+  pmacc --check MyMachine.ppproj            a project of the vendor's IDE: also its folder, or its pp_proj.ini
+  pmacc --emit=files MyMachine              list the files of a project in load order
+  pmacc --emit=elements                     list the data-structure elements that are known
+  pmacc --explain PM4001                    say more about a message
+  pmacc fmt --help                          the formatter)";
 
 void declare_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("files", arguments.files, "source files in load order; - reads standard input");
@@ -30,11 +33,16 @@ void declare_output_options(CLI::App& app, Arguments& arguments) {
 }
 
 void declare_message_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("-W", arguments.warnings, "extra: more warnings; error: warnings are errors")->type_name("NAME")->allow_extra_args(false)->check(CLI::IsMember({"extra", "error", "all"}));
-  app.add_option("--diagnostics-format", arguments.format, "text or json, on standard error")->check(CLI::IsMember({"text", "json"}))->type_name("FORMAT");
-  app.add_option("--color", arguments.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
-  app.add_option("--error-limit", arguments.error_limit, "stop reporting after this many errors")->type_name("COUNT");
-  app.add_option("--explain", arguments.explain, "say more about the message of this code")->type_name("CODE");
+  app.add_option("-W", arguments.warnings, "all, extra, name, no-name, error, error=name, no-error=name; the last one counts")->type_name("NAME")->allow_extra_args(false)->group("Messages");
+  app.add_flag("-w", arguments.no_warnings, "no warnings")->group("Messages");
+  app.add_flag("--help-warnings", arguments.help_warnings, "list the names for -W")->group("Messages");
+  app.add_option("--explain", arguments.explain, "say more about the message of this code; all: about every one")->type_name("CODE")->group("Messages");
+  app.add_option("--diagnostics-format", arguments.format, "text, json, sarif or github, on standard error")->check(CLI::IsMember({"text", "json", "sarif", "github"}))->type_name("FORMAT")->group("Messages");
+  app.add_option("--color", arguments.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN")->group("Messages");
+  app.add_option("--error-limit", arguments.error_limit, "stop reporting after this many errors; 0: never")->type_name("COUNT")->group("Messages");
+  app.add_option("--repeat-limit", arguments.repeat_limit, "show so many of the same Turbo PMAC spelling in a file, then only their lines; 0: all")->type_name("COUNT")->group("Messages");
+  app.add_flag("--fix", arguments.fix, "repair the files in place where a message has a safe repair")->group("Repairs");
+  app.add_flag("--fix-dry-run", arguments.fix_dry_run, "print what --fix would change, as a unified diff")->group("Repairs");
 }
 
 }  // namespace
@@ -62,7 +70,11 @@ compiler::Options compiler_options(const Arguments& arguments) {
     const std::size_t equals = define.find('=');
     options.defines.emplace_back(define.substr(0, equals), equals == std::string::npos ? "" : define.substr(equals + 1));
   }
-  options.extra_warnings = std::find(arguments.warnings.begin(), arguments.warnings.end(), "extra") != arguments.warnings.end();
+  for (const std::string& warning : arguments.warnings) {
+    const std::string problem = options.warnings.apply(warning);
+    if (!problem.empty()) std::cerr << "pmacc: warning: " << problem << "\n";
+  }
+  if (arguments.no_warnings) options.warnings.silence();
   return options;
 }
 

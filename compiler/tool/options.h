@@ -16,7 +16,8 @@ struct Arguments {
   std::vector<std::string> files, include_dirs, defines, warnings;
   std::string output, emit, format = "text", color = "auto", explain;
   std::size_t error_limit = 100;
-  bool check = false, preprocess = false;
+  std::size_t repeat_limit = 2;
+  bool check = false, preprocess = false, no_warnings = false, help_warnings = false, fix = false, fix_dry_run = false;
 };
 
 /// What the person at the command line has to mend: a wrong option, an unreadable file. Ends with exit code 2.
@@ -25,7 +26,7 @@ struct UsageError : std::runtime_error { using std::runtime_error::runtime_error
 /// Reads the command line. exit_code has a value when there is nothing left to do (--help, --version, a wrong option).
 Arguments parse_command_line(int argc, char** argv, std::optional<int>& exit_code);
 
-/// What the compiler needs to know of it.
+/// What the compiler needs to know of it. Unknown -W names are named on standard error.
 compiler::Options compiler_options(const Arguments& arguments);
 
 }  // namespace pmac::pmacc

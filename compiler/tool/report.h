@@ -6,7 +6,9 @@
 
 namespace pmac::pmacc {
 
-/// Takes the diagnostics out of the session and prints them; true if there are errors.
+void set_error_limit(compiler::Session& session, const Arguments& arguments);
+
+/// Takes the diagnostics out of the session and prints them; true if there are errors. The formats of tools stand alone on the stream.
 bool report(compiler::Session& session, const Arguments& arguments);
 
 }  // namespace pmac::pmacc

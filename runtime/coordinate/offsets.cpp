@@ -43,6 +43,7 @@ std::string CoordSystem::change_positions(double time_ms, const PositionChange& 
     values[static_cast<std::size_t>(change.axis)] = change.value;
     frame_.rename(machine_.elements, program_uu_, 1u << change.axis, values);
   }
+  if (phase_ == Phase::kPaused) pause_here(time_ms);  // the paused program goes on from the new position
   return rename_position();
 }
 

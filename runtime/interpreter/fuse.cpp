@@ -75,4 +75,19 @@ void fuse(bytecode::Module& module) {
   for (bytecode::Program& program : module.programs) fuse_code(program.code, sequences);
 }
 
+void unfuse(bytecode::Program& program) {
+  static const Opcode kFirst[] = {
+#define FUSED2(loads, A, B) Opcode::k##A,
+#define FUSED3(loads, A, B, C) Opcode::k##A,
+#define FUSED4(loads, A, B, C, D) Opcode::k##A,
+#include "runtime/interpreter/fused.def"
+#undef FUSED2
+#undef FUSED3
+#undef FUSED4
+  };
+  constexpr auto kPlain = static_cast<std::size_t>(Opcode::kCount);
+  for (Instruction& in : program.code)
+    if (static_cast<std::size_t>(in.op) >= kPlain) in.op = kFirst[static_cast<std::size_t>(in.op) - kPlain];
+}
+
 }  // namespace pmac::runtime

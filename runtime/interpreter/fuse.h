@@ -34,5 +34,7 @@ enum class FusedOpcode : std::uint16_t {
 /// Makes the programs of a verified module faster. To be called once, before the module executes; afterwards the module can
 /// neither be verified nor saved. Without it everything works as well.
 void fuse(bytecode::Module& module);
+/// The plain instructions again.
+void unfuse(bytecode::Program& program);
 
 }  // namespace pmac::runtime

@@ -98,6 +98,10 @@ class Thread {
   /// reset_jump_backs(); <= 0: never.
   RunResult run(Host& host, std::uint64_t instruction_budget, std::int64_t jump_back_limit);
 
+  /// Executes the rest of a source line: stops where another line begins, or as run() does at a backward jump. What the line calls in
+  /// other modules is executed up to its first backward jump.
+  RunResult run_line(Host& host, std::uint64_t instruction_budget);
+
   void reset_jump_backs() { jump_backs_ = 0; }
   /// True from begin() until the program has ended or failed. Locals of the top frame stay readable after the end.
   bool active() const { return static_cast<bool>(program_); }
@@ -130,6 +134,7 @@ class Thread {
  private:
   friend class InterpreterCore;
   bool stand_at_top(std::int64_t label);
+  void replace_module(const std::shared_ptr<const bytecode::Module>& from, const std::shared_ptr<const bytecode::Module>& by);
 
   ProgramHandle program_, top_;
   std::vector<double> stack_;

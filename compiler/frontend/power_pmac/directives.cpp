@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +29,12 @@ std::string text_of(const std::vector<Token>& line, std::size_t first, std::size
   return text;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 }  // namespace
 
 bool Preprocessor::take_directive(const Tokens& line) {
@@ -35,13 +42,21 @@ bool Preprocessor::take_directive(const Tokens& line) {
   if (first + 1 >= line.size() || line[first].text != "#" || line[first + 1].kind != Kind::kIdentifier) return false;
   const Token& word = line[first + 1];
   const bool known = std::find(kDirectives.begin(), kDirectives.end(), word.text) != kDirectives.end();
+  if (const std::string lower = lower_case(word.text); !known && std::find(kDirectives.begin(), kDirectives.end(), lower) != kDirectives.end()) {
+    if (is_active()) {
+      auto& error = diagnostics_.error("PM1003", source::join(line[first].span, word.span), fmt::format("directives are written in lower case: #{}", lower));
+      error.fix = source::FixIt{word.span, lower};
+    }
+    run_directive(lower, line, first);
+    return true;
+  }
   if (!known) {
     const std::vector<std::string_view> names(kDirectives.begin(), kDirectives.end());
-    const std::string_view near = word.text.size() > 3 ? source::nearest_word(word.text, names) : std::string_view();
-    if (near.empty()) return false;
+    const source::Guess near = word.text.size() > 3 ? source::guess_word(word.text, names) : source::Guess{};
+    if (near.word.empty()) return false;
     if (is_active()) {
-      auto& error = diagnostics_.error("PM1003", source::join(line[first].span, word.span), fmt::format("unknown directive #{}; did you mean #{}?", word.text, near));
-      error.fix = source::FixIt{word.span, std::string(near)};
+      auto& error = diagnostics_.error("PM1003", source::join(line[first].span, word.span), fmt::format("unknown directive #{}; did you mean #{}?", word.text, near.word));
+      error.fix = source::guess_fix(word.span, near);
     }
     return true;
   }

@@ -34,9 +34,11 @@ Operator binary_operator(std::string_view text) {
       {"&", Operator::kBitAnd}, {"|", Operator::kBitOr}, {"^", Operator::kBitXor}, {"<<", Operator::kShiftLeft}, {">>", Operator::kShiftRight},
       {"==", Operator::kEqual}, {"!=", Operator::kNotEqual}, {"<>", Operator::kNotEqual}, {"<", Operator::kLess}, {">", Operator::kGreater},
       {"<=", Operator::kLessEqual}, {">=", Operator::kGreaterEqual}, {"!>", Operator::kNotGreater}, {"!<", Operator::kNotLess},
-      {"~", Operator::kNear}, {"!~", Operator::kNotNear}, {"&&", Operator::kAnd}, {"||", Operator::kOr}};
+      {"~", Operator::kNear}, {"!~", Operator::kNotNear}, {"&&", Operator::kAnd}, {"||", Operator::kOr},
+      {"=", Operator::kEqual}, {"and", Operator::kAnd}, {"or", Operator::kOr}};  // of Turbo PMAC, reported by now
+  const std::string word = lower_case(text);
   for (const Row& row : kRows)
-    if (row.text == text) return row.op;
+    if (row.text == word) return row.op;
   return Operator::kAdd;
 }
 

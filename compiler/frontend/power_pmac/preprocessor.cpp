@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
+
+#include "compiler/frontend/power_pmac/turbo_text.h"
 
 namespace pmac::compiler::power_pmac {
 namespace {
@@ -115,6 +118,7 @@ void Preprocessor::run_file(std::int32_t file) {
   const std::size_t open_conditionals = conditionals_.size();
   const std::string& text = sources_.file(file).text;
   std::size_t cursor = text.starts_with("\xef\xbb\xbf") ? 3 : 0;
+  const bool turbo_before = std::exchange(turbo_file_, is_turbo_text(text));
   record(SourceLine::Kind::kFileBegins, {}, file);
   while (cursor < text.size()) {
     Tokens line = next_line(file, cursor);
@@ -129,6 +133,19 @@ void Preprocessor::run_file(std::int32_t file) {
     diagnostics_.error("PM1007", conditionals_.back().span, "#if without #endif");
     conditionals_.pop_back();
   }
+  turbo_file_ = turbo_before;
+}
+
+bool Preprocessor::begins_turbo_comment(std::string_view text, std::size_t at) const {
+  if (turbo_file_) return true;
+  return reads_as_prose(text.substr(at + 1, std::min(text.find('\n', at), text.size()) - at - 1));
+}
+
+void Preprocessor::report_turbo_comment(std::int32_t file, std::size_t at) {
+  if (!is_active()) return;
+  const source::Span span{file, static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at + 1), -1};
+  auto& error = diagnostics_.error("PM2020", span, "; ends a statement and begins no comment; write //");
+  error.fix = source::FixIt{span, "//"};
 }
 
 /// One line with its line end, comments left out; goes on over line ends inside block comments, and after a backslash where the
@@ -156,6 +173,11 @@ Preprocessor::Tokens Preprocessor::next_line(std::int32_t file, std::size_t& cur
       cursor = end_of_string(text, cursor);
     } else if (c == '/' && next == '/') {
       add(start, cursor);
+      cursor = std::min(text.find('\n', cursor), text.size());
+      start = cursor;
+    } else if (c == ';' && begins_turbo_comment(text, cursor)) {
+      add(start, cursor);
+      report_turbo_comment(file, cursor);
       cursor = std::min(text.find('\n', cursor), text.size());
       start = cursor;
     } else if (c == '/' && next == '*') {

@@ -50,6 +50,8 @@ class Preprocessor {
 
   void run_file(std::int32_t file);
   Tokens next_line(std::int32_t file, std::size_t& cursor);
+  bool begins_turbo_comment(std::string_view text, std::size_t at) const;
+  void report_turbo_comment(std::int32_t file, std::size_t at);
   void check_swallowed_program(std::string_view comment, const source::Span& span);
   bool take_directive(const Tokens& line);
   void run_directive(std::string_view name, const Tokens& line, std::size_t first);
@@ -77,6 +79,7 @@ class Preprocessor {
   std::vector<SourceLine> recorded_;
   bool recording_ = false;
   ExpandedText* out_ = nullptr;
+  bool turbo_file_ = false;   // the file at hand has the comments of Turbo PMAC
   int include_depth_ = 0;
   std::size_t include_count_ = 0;
   bool includes_stopped_ = false;  // a limit was reached and reported

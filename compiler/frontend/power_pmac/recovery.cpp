@@ -193,9 +193,14 @@ class Recovery : public antlr4::DefaultErrorStrategy {
       diagnostics_.error("PM2009", tree_.span_of(token), fmt::format("'{}' is no axis; the axes are A B C U V W X Y Z and AA to HH, LL to ZZ", word.substr(0, letters)));
       return;
     }
-    const std::string_view near = source::nearest_word(word, candidates);
-    auto& error = diagnostics_.error("PM2008", tree_.span_of(token), near.empty() ? fmt::format("unknown word '{}'", word) : fmt::format("unknown word '{}'; did you mean '{}'?", word, near));
-    if (!near.empty()) error.fix = source::FixIt{tree_.span_of(token), std::string(near)};
+    source::Span place = tree_.span_of(token);
+    source::Guess near = source::guess_word(word, candidates);
+    if (near.word.empty() || near.word.size() + 1 < word.size()) {  // circel1: a number is glued to the word
+      const source::Guess without_number = source::guess_word(word.substr(0, letters), keyword_names());
+      if (letters < word.size() && !without_number.word.empty() && place.expansion < 0) near = without_number, place.end = place.begin + static_cast<std::uint32_t>(letters);
+    }
+    auto& error = diagnostics_.error("PM2008", tree_.span_of(token), near.word.empty() ? fmt::format("unknown word '{}'", word) : fmt::format("unknown word '{}'; did you mean '{}'?", word, near.word));
+    if (!near.word.empty()) error.fix = source::guess_fix(place, near);
   }
 
   const SyntaxTree& tree_;

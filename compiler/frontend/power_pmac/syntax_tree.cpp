@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/frontend/power_pmac/turbo_pass.h"
+
 namespace pmac::compiler::power_pmac {
 namespace {
 
@@ -65,19 +67,21 @@ std::string_view SyntaxTree::text_of(const antlr4::Token& token) const {
   return std::string_view(expanded.text()).substr(token.getStartIndex(), token.getStopIndex() + 1 - token.getStartIndex());
 }
 
-std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names) {
+std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names, source::Diagnostics* diagnostics) {
   auto tree = std::make_unique<SyntaxTree>();
   tree->expanded = std::move(expanded);
   tree->input = std::make_unique<antlr4::ANTLRInputStream>(as_ascii(tree->expanded.text()));
   tree->lexer = std::make_unique<WordLexer>(tree->input.get(), tree->expanded.text(), names);
-  tree->source = run_token_pass(*tree->lexer);
+  const TokenText text{[&](const antlr4::Token& token) { return tree->text_of(token); }, [&](const antlr4::Token& token) { return tree->span_of(token); }};
+  tree->repaired = repair_turbo(*tree->lexer, text, names, diagnostics);
+  tree->source = run_token_pass(*tree->repaired);
   tree->tokens = std::make_unique<antlr4::CommonTokenStream>(tree->source.get());
   tree->tokens->fill();
   return tree;
 }
 
 std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics) {
-  auto tree = lex(std::move(expanded), names);
+  auto tree = lex(std::move(expanded), names, &diagnostics);
   if (!within_limits(*tree, diagnostics)) return tree;
   tree->parser = std::make_unique<grammar::PowerPmacParser>(tree->tokens.get());
   tree->parser->removeErrorListeners();

@@ -19,7 +19,8 @@ struct SyntaxTree {
   ExpandedText expanded;
   std::unique_ptr<antlr4::ANTLRInputStream> input;
   std::unique_ptr<WordLexer> lexer;
-  std::unique_ptr<antlr4::TokenSource> source;  // the lexer's tokens after the token pass
+  std::unique_ptr<antlr4::TokenSource> repaired;  // the lexer's tokens with those of Turbo PMAC replaced
+  std::unique_ptr<antlr4::TokenSource> source;    // these after the token pass
   std::unique_ptr<antlr4::CommonTokenStream> tokens;
   std::unique_ptr<grammar::PowerPmacParser> parser;
   grammar::PowerPmacParser::FileContext* root = nullptr;  // null where a limit stopped the parse
@@ -30,10 +31,10 @@ struct SyntaxTree {
 };
 
 /// All tokens of the lexer, with what lines mean told by tokens: see token_pass.cpp.
-std::unique_ptr<antlr4::TokenSource> run_token_pass(WordLexer& lexer);
+std::unique_ptr<antlr4::TokenSource> run_token_pass(antlr4::TokenSource& lexer);
 
 /// Lexes without parsing, for --emit=tokens.
-std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names);
+std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names, source::Diagnostics* diagnostics = nullptr);
 
 /// Reports every syntax error to diagnostics; the tree then has gaps (rules with an exception).
 std::unique_ptr<SyntaxTree> parse(ExpandedText expanded, DeclaredNames& names, source::Diagnostics& diagnostics);

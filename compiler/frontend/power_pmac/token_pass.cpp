@@ -30,7 +30,7 @@ bool is_step(std::size_t type) { return type >= T::INCREMENT && type <= T::SYNC_
 
 class TokenPass {
  public:
-  explicit TokenPass(WordLexer& lexer) : lexer_(lexer) {
+  explicit TokenPass(antlr4::TokenSource& lexer) : lexer_(lexer) {
     for (std::unique_ptr<antlr4::Token> token = lexer.nextToken();; token = lexer.nextToken()) {
       const bool last = token->getType() == antlr4::Token::EOF;
       in_.push_back(std::move(token));
@@ -258,7 +258,7 @@ class TokenPass {
     out_.push_back(std::move(join));
   }
 
-  WordLexer& lexer_;
+  antlr4::TokenSource& lexer_;
   Tokens in_, out_;
   std::size_t at_ = 0;
   std::size_t in_type_ = 0;      // type that the lexer gave to the token at hand
@@ -278,6 +278,6 @@ class TokenPass {
 
 }  // namespace
 
-std::unique_ptr<antlr4::TokenSource> run_token_pass(WordLexer& lexer) { return std::make_unique<antlr4::ListTokenSource>(TokenPass(lexer).run()); }
+std::unique_ptr<antlr4::TokenSource> run_token_pass(antlr4::TokenSource& lexer) { return std::make_unique<antlr4::ListTokenSource>(TokenPass(lexer).run()); }
 
 }  // namespace pmac::compiler::power_pmac

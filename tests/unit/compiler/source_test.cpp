@@ -58,13 +58,6 @@ TEST_CASE("errors behind the limit are counted, not kept; repetitions are droppe
   CHECK_FALSE(diagnostics.has_errors());
 }
 
-TEST_CASE("warnings become errors on request", "[source]") {
-  Diagnostics diagnostics;
-  diagnostics.set_warnings_are_errors(true);
-  diagnostics.warning("PM1", {}, "careful");
-  CHECK(diagnostics.has_errors());
-}
-
 TEST_CASE("the nearest word allows a third of the letters to be wrong", "[source]") {
   CHECK(nearest_word("linaer", {"linear", "rapid"}) == "linear");
   CHECK(nearest_word("DWEL", {"dwell", "delay"}) == "dwell");

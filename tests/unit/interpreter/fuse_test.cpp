@@ -154,3 +154,15 @@ TEST_CASE("fusing: every sequence of the table occurs in the random programs", "
   }
   CHECK(seen.size() == static_cast<std::size_t>(pmac::runtime::FusedOpcode::kEnd) - static_cast<std::size_t>(kCount));
 }
+
+TEST_CASE("unfusing gives back the plain instructions", "[fuse]") {
+  std::mt19937 random(23);
+  for (int i = 0; i < 200; ++i) {
+    Module module;
+    module.programs.emplace_back().code = FusibleCode(random).make();
+    const std::vector<Instruction> plain = module.programs[0].code;
+    fuse(module);
+    pmac::runtime::unfuse(module.programs[0]);
+    REQUIRE(module.programs[0].code == plain);
+  }
+}

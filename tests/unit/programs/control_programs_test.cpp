@@ -148,3 +148,17 @@ TEST_CASE("axis values of a coordinate system go to D variables", "[programs]") 
   REQUIRE(bench.faults.empty());
   CHECK(bench.answers == std::vector<std::string>{"[send 1] -0.00 -0.50 $c0", "[send 1] 10.00", "[send 1] 30.00", "[send 1] 0.00", "[send 1] $40"});
 }
+
+TEST_CASE("step plc executes a line; then the PLC is paused there", "[programs]") {
+  ProgramBench bench("a.pmc", "open plc 1\nP1 = P1 + 1 P2 = 10\nif (P1 == 1)\n{\nP3 = 5\n}\nP4 = 7\nclose\n");
+  const auto step = [&](double ms) { bench.machine->at(ms, "step plc 1 P1 P2 P3 P4 Plc[1].Active Plc[1].Running"); };
+  for (double ms : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) step(ms);
+  bench.run("P9=0", until(10));
+  REQUIRE(bench.refusals.empty());
+  REQUIRE(bench.answers.size() == 36);
+  const auto seen = [&](int k) { return bench.answers[static_cast<std::size_t>(6 * k)] + " " + bench.answers[static_cast<std::size_t>(6 * k + 1)] + " " + bench.answers[static_cast<std::size_t>(6 * k + 2)] + " " + bench.answers[static_cast<std::size_t>(6 * k + 3)]; };
+  CHECK(seen(0) == "P1=1 P2=10 P3=0 P4=0");   // the line, whole
+  CHECK(seen(5) == "P1=2 P2=10 P3=5 P4=7");   // the last step is the first line of the next scan
+  CHECK(bench.answers[4] == "Plc[1].Active=1");
+  CHECK(bench.answers[5] == "Plc[1].Running=0");
+}

@@ -143,3 +143,15 @@ TEST_CASE("PosRollOver: an absolute move goes the short way round", "[programs][
   CHECK(last(Lines(sign + "C350\nC10"), 4) == Approx(370.0).margin(1e-6));
   CHECK(last(Lines(sign + "C100\nC-350"), 4) == Approx(10.0).margin(1e-6));
 }
+
+TEST_CASE("pmatch: a paused program whose motor has been jogged goes on from there", "[programs][transform]") {
+  for (const bool match : {true, false}) {
+    ProgramBench bench("lines.pmc", with_motors("X10\nX20\nX30\nX40\nX50\nX60", "Motor[1].JogSpeed=10"));
+    bench.machine->at(300, "&1 q");
+    bench.machine->at(5000, "#1 j:500");
+    bench.machine->at(8000, match ? "&1 pmatch r" : "&1 r");
+    bench.run("&1 b1r");
+    CHECK(bench.refusals.size() == (match ? 0u : 1u));
+    if (match) CHECK(last(bench, 1) == Approx(60.0).margin(1e-9));
+  }
+}
