@@ -10,6 +10,8 @@ grammar PowerPmac;
 @parser::members {
 /// The next token is on the line of the token before it.
 bool sameLine() { return _input->LT(1)->getLine() == _input->LT(-1)->getLine(); }
+/// What a command takes of its line ends here.
+bool restEnds() { return _input->LA(1) == antlr4::Token::EOF || _input->LA(1) == SEMICOLON || !sameLine(); }
 /// A pointer's target comes next, on the same line.
 bool targetFollows() {
   const size_t type = _input->LA(1);
@@ -248,7 +250,7 @@ online
   | ECHO NUMBER?
   | LINE_PERCENT ({sameLine()}? data)?
   | single=('?' | '\\' | '$' | RESET)
-  | OTHER_COMMAND ({sameLine()}? ~(EOF | ';'))*
+  | OTHER_COMMAND ({!restEnds()}? ~(EOF | ';'))* {restEnds()}?
   | programControl
   ;
 

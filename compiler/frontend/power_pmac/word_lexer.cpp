@@ -147,7 +147,7 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
 bool WordLexer::must_be_name(std::string_view word, std::size_t end) const {
   const std::size_t next = text_.find_first_not_of(" \t", end);
   const auto at = [&](std::size_t i) { return i < text_.size() ? text_[i] : '\0'; };
-  if (last_[0] == T::CALL) return true;
+  if (last_[0] == T::CALL || (last_[0] == T::COLON && last_[1] == T::SUB)) return true;
   const bool opens_named = (last_[0] == T::PROG || last_[0] == T::PLC || last_[0] == T::SUBPROG) && (last_[1] == T::OPEN || find(buffer_keywords(), word) == 0);
   if (opens_named) return true;
   const bool has_digit = std::any_of(word.begin(), word.end(), is_digit);
