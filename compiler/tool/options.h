@@ -16,7 +16,7 @@ struct Arguments {
   std::vector<std::string> files, include_dirs, defines, warnings;
   std::string output, emit, format = "text", color = "auto", explain;
   std::size_t error_limit = 100;
-  bool check = false;
+  bool check = false, preprocess = false;
 };
 
 /// What the person at the command line has to mend: a wrong option, an unreadable file. Ends with exit code 2.
