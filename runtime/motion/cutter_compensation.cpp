@@ -148,6 +148,8 @@ std::optional<Fault> CutterCompensation::go_on(const MotionCommand& command, con
   Held next = hold(command, move);
   next.start_offset = before;
   next.end_offset = offset_of(command);
+  if (move.is_arc && std::min(move.start_radius, move.end_radius) <= kNoWay)
+    return Fault{FaultKind::kCcNoSolution, command.source, "an arc that ends in its centre has no direction there"};
   const OffsetCurve curve = offset_curve(move, next.start_offset, next.end_offset);
   if (move.is_arc && (curve.start_radius <= 0 || curve.end_radius <= 0))
     return Fault{FaultKind::kCcNoSolution, command.source,
@@ -292,7 +294,9 @@ void CutterCompensation::start_from_rest(Held& next, std::vector<MotionCommand>&
   next.start = corner + left_of(after) * next.start_offset;
   if (length(next.start - last.end) <= kBackwards) return;
   const bool outside = next.start_offset * cross(before, after) < 0 || dot(before, after) < kReversalCosine;
-  emit_added(last.command, outside ? corner_arc(corner, before, after, next.start_offset) : plane_line(last.end, next.start), out);
+  MotionCommand source = next.command;
+  source.id -= 2;
+  emit_added(source, outside ? corner_arc(corner, before, after, next.start_offset) : plane_line(last.end, next.start), out);
 }
 
 // --- what goes out ------------------------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ class CutterCompensation {
   void configure(const CompensationConfig& config) { config_ = config; }
 
   /// The next command, from start_uu (programmed). What is decided by it is appended to `out`: targets of every axis, to be taken
-  /// up from one to the next. An added move has the id of the one before it plus 1. Faults: the kinds kCc..., and those of arcs.
+  /// up from one to the next. An added move has the id of the one before it plus 1, after a flush that of the one after it less 1. Faults: the kinds kCc..., and those of arcs.
   [[nodiscard]] std::optional<runtime::Fault> add(const MotionCommand& command, const AxisVector& start_uu, std::vector<MotionCommand>& out);
 
   /// Motion has to come to rest before the next command is known: the last move ends at right angles to its programmed end.

@@ -294,6 +294,7 @@ TEST_CASE("compensation: what cannot be compensated is named with its line", "[m
   const Job arc = Job(-5, 0).side(1).to(0, 0).to(10, 0).ccw(10, 3, 0, 1.5).to(0, 3);
   CHECK(kind_of(arc) == FaultKind::kCcNoSolution);
   CHECK(arc.fault->source.line == 3);
+  CHECK(kind_of(Job(-5, 0).side(2).to(0, 0).to(10, 0).ccw(10, 5, 0, 5)) == FaultKind::kCcNoSolution);  // a spiral into its centre
   CHECK(kind_of(Job(-5, 0).side(1).radius(6).to(5, 0).to(20, 0).ccw(0, 0, -10, 0).to(0, -30)) == FaultKind::kCcNoIntersection);
   // A slot of width 3 for a tool of radius 2: its end is passed backwards.
   const auto slot = [](const CompensationConfig& config) { return Job(-5, 0, config).side(1).to(0, 0).to(20, 0).to(20, 3).to(0, 3).side(0).to(-5, 3); };
@@ -321,6 +322,17 @@ TEST_CASE("compensation: a stop ends the move at right angles and goes on from t
   Job inside(-5, 0);
   inside.side(1).to(0, 0).to(10, 0).rest().to(10, 10).rest().side(0).to(10, 20);
   CHECK(ends(inside) == "line 0 2\nline 10 2\nline 8 0\nline 8 10\nline 10 20\n");
+}
+
+TEST_CASE("compensation: ids ascend, also of what is added before and after a stop", "[motion][cc]") {
+  Job job(-5, 0);
+  job.side(1).to(0, 0).to(10, 0).z(1).rest().z(2).to(10, -10).to(0, -10).z(3).to(0, -20).side(0).to(0, -30);
+  REQUIRE(!job.fault);
+  std::uint64_t before = 0;
+  for (const MotionCommand& c : job.out) {
+    CHECK(c.id > before);
+    before = c.id;
+  }
 }
 
 TEST_CASE("compensation: nothing is touched while it is off", "[motion][cc]") {
