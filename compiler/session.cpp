@@ -7,6 +7,7 @@
 #include "compiler/compiler.h"
 #include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/ir/ir.h"
+#include "compiler/sema/lint/lint.h"
 #include "compiler/sema/sema.h"
 #include "compiler/session_state.h"
 
@@ -49,6 +50,7 @@ std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& file
   const sema::Settings settings{online};
   for (ir::Unit& unit : units) sema::check(unit, project, settings, diagnostics);
   if (!online) sema::check_served_axes(units, project, diagnostics);
+  if (!online && !diagnostics.has_errors()) sema::lint(units, project, diagnostics);
   if (!online) warning_control.report_comments(first_file, !diagnostics.has_errors(), diagnostics);
   return units;
 }
