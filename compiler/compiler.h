@@ -75,4 +75,7 @@ std::string emit_ir(Session& session, const std::vector<InputFile>& files);
 std::string emit_symbols(Session& session, const std::vector<InputFile>& files);
 std::string emit_elements();
 
+/// The load stream as the vendor's loader hands it to its C pre-processor, for -E. Compiles to the same. Empty where there are errors.
+std::string emit_preprocessed(Session& session, const std::vector<InputFile>& files);
+
 }  // namespace pmac::compiler

@@ -50,6 +50,10 @@ std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& file
   const sema::Settings settings{online};
   for (ir::Unit& unit : units) sema::check(unit, project, settings, diagnostics);
   if (!online) sema::check_served_axes(units, project, diagnostics);
+  for (const ir::Unit& unit : units) {
+    if (unit.clear_all.valid() && has_programs) diagnostics.warning("PM5002", unit.clear_all, "clear all buffers empties the programs of this file; those that were loaded before it stay");
+    has_programs = has_programs || !unit.buffers.empty();
+  }
   if (!online && !diagnostics.has_errors()) sema::lint(units, project, diagnostics);
   if (!online) warning_control.report_comments(first_file, !diagnostics.has_errors(), diagnostics);
   return units;
@@ -86,6 +90,7 @@ void Session::adopt(const bytecode::Module& module) {
     if (symbol.kind == bytecode::SymbolKind::kMacro) state_->frontend.define(symbol.name, symbol.text);
     else state_->frontend.know_name(symbol.name);
   }
+  state_->has_programs = state_->has_programs || module.programs.size() > module.load_order.size();
 }
 
 source::Diagnostics& Session::diagnostics() { return state_->diagnostics; }

@@ -25,6 +25,7 @@ struct Session::State {
   source::Diagnostics diagnostics;
   power_pmac::Frontend frontend;
   sema::Project project;
+  bool has_programs = false;   // some buffer was compiled or loaded
 };
 
 }  // namespace pmac::compiler

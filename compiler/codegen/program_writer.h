@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "compiler/codegen/tables.h"
@@ -104,6 +105,7 @@ class ProgramWriter {
   void write(const ir::DefinePointer& node, const source::Span& span);
   void write(const ir::Globals& node, const source::Span& span);
   void write(const ir::Report& node, const source::Span& span);
+  void write(const ir::SystemCommand& node, const source::Span& span);
   void write(const ir::OpenBuffer& node, const source::Span& span);
   void write(const ir::ExecuteAtOnce& node, const source::Span& span);
   void assign(const ir::Expr& target, bytecode::AssignOp op, const ir::Expr& right);
@@ -130,6 +132,7 @@ class ProgramWriter {
   Register highest_ = 0;
   std::int64_t outgoing_count_ = 0;
   std::size_t first_program_ = 0;
+  std::optional<double> addressed_coord_;  // by the load script so far, where it is a constant
   source::Span span_;        // of the statement being written
 };
 

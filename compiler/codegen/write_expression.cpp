@@ -86,11 +86,7 @@ ProgramWriter::Register ProgramWriter::index_of(const ir::Variable& variable) {
   if (variable.number == 0) return number;
   const Register base = take();
   load_number(static_cast<double>(variable.number), base);
-  // the index is cut to an integer before it is added: Arr(1.9) is element 1, also for negative indices
-  const Register zero = take();
-  load_number(0, zero);
-  emit_abc(Opcode::kBitOr, number, number, zero);
-  emit_abc(Opcode::kAdd, number, number, base);
+  emit_abc(Opcode::kAdd, number, number, base);  // Arr(i) is P(8192+i), cut to an integer when it is used
   return number;
 }
 

@@ -329,7 +329,14 @@ void ProgramWriter::write(const ir::Send& node, const source::Span&) {
   format_values(pointers(node.values));
   emit_imm(Opcode::kSend, static_cast<Register>(node.port), tables_.string(node.text));
 }
-void ProgramWriter::write(const ir::AddressCoord& node, const source::Span&) { emit_imm(Opcode::kAddressCoord, value(*node.number), 0); }
+
+/// &1 that is addressed already needs no code: it stands before every axis definition in what pmacc -E prints.
+void ProgramWriter::write(const ir::AddressCoord& node, const source::Span&) {
+  const auto number = ir::constant_value(*node.number);
+  if (number && addressed_coord_ == number) return;
+  addressed_coord_ = number;
+  emit_imm(Opcode::kAddressCoord, value(*node.number), 0);
+}
 void ProgramWriter::write(const ir::AddressMotor& node, const source::Span&) { emit_imm(Opcode::kAddressMotor, value(*node.number), 0); }
 
 void ProgramWriter::write(const ir::DefineAxis& node, const source::Span&) {
@@ -348,7 +355,13 @@ void ProgramWriter::write(const ir::DefinePointer& node, const source::Span&) {
   emit_imm(Opcode::kDefinePointer, 0, static_cast<std::int64_t>(table.size()) - 1);
 }
 
-void ProgramWriter::write(const ir::Report& node, const source::Span&) { emit_imm(Opcode::kReport, value(*node.value), tables_.string(node.name)); }
+void ProgramWriter::write(const ir::Report& node, const source::Span&) {
+  const auto* element = std::get_if<ir::Element>(&node.value->node);
+  if (element) emit_imm(Opcode::kReportElement, value(*node.value), element_ref(*element));
+  else emit_imm(Opcode::kReport, value(*node.value), tables_.string(node.name));
+}
+
+void ProgramWriter::write(const ir::SystemCommand& node, const source::Span&) { emit_imm(Opcode::kSystemCommand, 0, tables_.string(node.text)); }
 void ProgramWriter::write(const ir::ExecuteAtOnce& node, const source::Span&) { emit_imm(Opcode::kExecuteProgram, 0, static_cast<std::int64_t>(first_program_ + node.buffer)); }
 void ProgramWriter::write(const ir::OpenBuffer& node, const source::Span&) { emit_imm(Opcode::kInstallProgram, 0, static_cast<std::int64_t>(first_program_ + node.buffer)); }
 

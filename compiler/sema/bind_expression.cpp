@@ -43,6 +43,28 @@ std::optional<std::int64_t> number_suffix(std::string_view text) {
   return value;
 }
 
+std::optional<std::int64_t> small_integer(const ir::Expr& expr) {
+  const auto value = ir::constant_value(expr);
+  if (!value || *value != std::floor(*value) || std::abs(*value) > 1e9) return std::nullopt;
+  return static_cast<std::int64_t>(*value);
+}
+
+/// P(8192 + i): the constant part goes to the number, as in an array that begins there.
+void fold_constant_part(ir::Variable& variable) {
+  auto* sum = variable.index ? std::get_if<ir::Binary>(&variable.index->node) : nullptr;
+  const auto first = sum && sum->op == Operator::kAdd ? small_integer(*sum->left) : std::nullopt;
+  const auto in_range = [&](std::int64_t number) { return number >= 0 && number < range_of(variable.variable_class).count; };
+  if (!first || !in_range(variable.number + *first)) return;
+  variable.number += *first;
+  ir::ExprPtr rest = std::move(sum->right);
+  const auto constant = small_integer(*rest);
+  if (constant && in_range(variable.number + *constant)) {
+    variable.number += *constant;
+    rest.reset();
+  }
+  variable.index = std::move(rest);
+}
+
 }  // namespace
 
 void Binder::bind_value(ir::Expr& expr) {
@@ -110,6 +132,7 @@ void Binder::bind_expr(ir::Expr& expr) {
 }
 
 void Binder::bind_variable(ir::Variable& variable, const source::Span& span) {
+  fold_constant_part(variable);
   if (variable.index) bind_value(*variable.index);
   const ClassRange range = range_of(variable.variable_class);
   const bool fits = variable.number >= 0 && variable.number < range.count;

@@ -47,6 +47,14 @@ int emit(compiler::Session& session, const Arguments& arguments, const std::vect
   return report(session, arguments) ? kUserError : kOk;
 }
 
+int preprocess(compiler::Session& session, const Arguments& arguments, const std::vector<compiler::InputFile>& files) {
+  const std::string text = compiler::emit_preprocessed(session, files);
+  if (report(session, arguments)) return kUserError;
+  if (arguments.output.empty()) print(text);
+  else write_file(arguments.output, text);
+  return kOk;
+}
+
 int compile(compiler::Session& session, const Arguments& arguments, const std::vector<compiler::InputFile>& files) {
   const auto module = session.compile(files);
   if (report(session, arguments) || !module) return kUserError;
@@ -72,6 +80,7 @@ int run(const Arguments& arguments) {
   compiler::Session session(options);
   set_error_limit(session, arguments);
   const std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
+  if (arguments.preprocess) return preprocess(session, arguments, files);
   return arguments.emit.empty() ? compile(session, arguments, files) : emit(session, arguments, files);
 }
 

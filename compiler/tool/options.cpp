@@ -16,7 +16,8 @@ constexpr const char* kExamples = R"(Examples:
   pmacc --check MyMachine.ppproj            a project of the vendor's IDE: also its folder, or its pp_proj.ini
   pmacc --emit=files MyMachine              list the files of a project in load order
   pmacc --emit=elements                     list the data-structure elements that are known
-  pmacc --explain PM4001                    say more about a message)";
+  pmacc --explain PM4001                    say more about a message
+  pmacc fmt --help                          the formatter)";
 
 void declare_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("files", arguments.files, "source files in load order; - reads standard input");
@@ -27,6 +28,7 @@ void declare_input_options(CLI::App& app, Arguments& arguments) {
 void declare_output_options(CLI::App& app, Arguments& arguments) {
   app.add_option("-o", arguments.output, "write the object file FILE.pmx")->type_name("FILE");
   app.add_flag("--check", arguments.check, "only report what is wrong");
+  app.add_flag("-E", arguments.preprocess, "print the program as the controller's loader sees it: declarations as #define lines")->excludes("--check");
   app.add_option("--emit", arguments.emit, "print one stage instead of compiling")->check(CLI::IsMember({"files", "tokens", "tree", "ir", "bytecode", "symbols", "elements"}))->type_name("STAGE");
 }
 

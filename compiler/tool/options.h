@@ -17,7 +17,7 @@ struct Arguments {
   std::string output, emit, format = "text", color = "auto", explain;
   std::size_t error_limit = 100;
   std::size_t repeat_limit = 2;
-  bool check = false, no_warnings = false, help_warnings = false, fix = false, fix_dry_run = false;
+  bool check = false, preprocess = false, no_warnings = false, help_warnings = false, fix = false, fix_dry_run = false;
 };
 
 /// What the person at the command line has to mend: a wrong option, an unreadable file. Ends with exit code 2.

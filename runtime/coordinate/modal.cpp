@@ -89,7 +89,7 @@ void OpenBlock::add(WordKind kind, int index, double word) {
   switch (kind) {
     case WordKind::kTarget: axes |= 1u << index; value[index] = word; break;
     case WordKind::kVelocity: velocity_axes |= 1u << index; velocity[index] = word; break;
-    case WordKind::kTriggerDistance: trigger_axes |= 1u << index; break;
+    case WordKind::kTriggerDistance: trigger_axes |= 1u << index; trigger[index] = word; break;
     case WordKind::kCenter: center_words |= 1u << index; center[index] = word; break;
     case WordKind::kRadius: has_radius = true; radius = word; break;
     case WordKind::kCount: break;
@@ -121,8 +121,11 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
       return Fault{FaultKind::kBadTarget, source, "a centre word (I, J, K) is not a finite number"};
   if (block.has_radius && !std::isfinite(block.radius))
     return Fault{FaultKind::kBadTarget, source, "the radius word R is not a finite number"};
-  if (block.trigger_axes != 0)
-    return Fault{FaultKind::kNotSimulated, source, "move-until-trigger (^) is not simulated"};
+  if (block.trigger_axes != 0 && modal.mode != MoveMode::kRapid)
+    return Fault{FaultKind::kMoveType, source, "a move until a trigger (X50^-5) outside rapid mode; program rapid before"};
+  for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+    if (block.trigger_axes >> axis & 1u && !std::isfinite(block.trigger[axis]))
+      return Fault{FaultKind::kBadTarget, source, fmt::format("the distance of axis {} from its trigger is not a finite number", bytecode::axis_name(axis))};
   if (modal.mode == MoveMode::kSpline && (modal.spline_time_ms[0] != modal.spline_time_ms[1] || modal.spline_time_ms[0] != modal.spline_time_ms[2]))
     return Fault{FaultKind::kNotSimulated, source, "a spline of three different times is not simulated; give one, and another where it changes"};
   if (!is_circle(modal.mode) && (block.center_words != 0 || block.has_radius))

@@ -37,6 +37,7 @@ struct OpenBlock {
   std::uint32_t axes = 0;
   AxisVector value{};             // position or distance, as programmed
   std::uint32_t trigger_axes = 0, velocity_axes = 0;
+  AxisVector trigger{};           // distance from the trigger
   AxisVector velocity{};          // of pvt, axis units per FeedTime
   std::array<double, 6> center{};
   unsigned center_words = 0;      // mask of I J K II JJ KK

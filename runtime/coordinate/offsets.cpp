@@ -34,6 +34,7 @@ std::string CoordSystem::change_positions(double time_ms, const PositionChange& 
     return {};
   }
   if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
+  if (phase_ == Phase::kPaused) note_pause(time_ms);
   if (change.verb == ControlVerb::kPclr) frame_.position_bias_uu.fill(0);
   if (change.verb == ControlVerb::kPload) frame_.position_bias_uu = frame_.stored_bias_uu;
   if (change.verb == ControlVerb::kPset) {

@@ -9,6 +9,7 @@
 
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -57,8 +58,10 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
       block_.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), r[instruction.a]);
       return Flow::kContinue;
     case Opcode::kBlockEnd: return block_.empty() ? Flow::kContinue : end_block(thread);
-    case Opcode::kStepBegin:
-    case Opcode::kStepEnd: return Flow::kContinue;
+    case Opcode::kStepBegin: step_block_ = true; return Flow::kContinue;
+    case Opcode::kStepEnd:
+      step_block_ = false;
+      return stepping_ ? stop_item(thread, AfterRest::kPause) : Flow::kContinue;
     case Opcode::kDwell:
     case Opcode::kDelay: {
       const double ms = r[instruction.a];
@@ -103,10 +106,7 @@ Flow CoordSystem::end_block(Thread& thread) {
   if (auto fault = check_block(modal, block, thread.source())) return give_up(thread, *fault);
   if (modal.mode == MoveMode::kRapid) {
     if (auto fault = refuse_while_compensating("a rapid move", thread.source())) return give_up(thread, *fault);
-    motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
-    program_uu_ = command.target_uu;
-    if (auto fault = place(command)) return give_up(thread, *fault);
-    rapid_target_uu_ = command.target_uu;
+    if (auto fault = rapid_move(modal, block, thread.source(), rapid_)) return give_up(thread, *fault);
     return stop_item(thread, AfterRest::kRapid);
   }
   motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
@@ -117,9 +117,16 @@ Flow CoordSystem::end_block(Thread& thread) {
 
 Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
   item_source_ = thread.source();
-  if (stepping_) pause_requested_ = true;
+  const bool is_step = then == AfterRest::kDwell || then == AfterRest::kRapid || then == AfterRest::kHome;
+  if (stepping_ && !step_block_ && is_step) pause_requested_ = true;
   if (auto fault = come_to_rest(machine_.now_ms, then)) return give_up(thread, std::move(*fault));
   return Flow::kSuspend;
+}
+
+Flow CoordSystem::home_motor(Thread& thread, int motor, bool also) {
+  if (auto fault = refuse_while_compensating("home", thread.source())) return give_up(thread, *fault);
+  home_motors_.push_back(motor);
+  return also ? Flow::kContinue : stop_item(thread, AfterRest::kHome);
 }
 
 Flow CoordSystem::home_zero(Thread& thread, int motor) {
@@ -153,7 +160,7 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   next_id_ += spline ? 3 : command.compensation_side != 0 || compensation_.active() ? 2 : 1;  // what is added has the ids between
   if (auto fault = spline ? add_to_spline(command, start) : hand_on(std::move(command), start)) return give_up(thread, *fault);
   collect_timings();
-  if (stepping_) return stop_item(thread, AfterRest::kPause);
+  if (stepping_ && !step_block_) return stop_item(thread, AfterRest::kPause);
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
   moves_without_time_ = 0;
   resume_ms_ = next_calculation_ms(machine_.now_ms);
@@ -253,6 +260,7 @@ void CoordSystem::ensure_sequence(double time_ms) {
   const double path_ms = clock_for_motion(time_ms)->path_at(time_ms);
   pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
+  before_mu_.clear();
   sampled_to_ms_ = sequence_start_ms_ = path_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
 }
@@ -309,23 +317,37 @@ double CoordSystem::next_calculation_ms(double time_ms) const {
 double CoordSystem::next_event_ms() const {
   const double due = due_.empty() || sync_.empty() ? kNever : time_base_.time_at(due_.front().time_ms);
   const double settled = time_base_.settled_from_ms() > machine_.now_ms ? time_base_.settled_from_ms() : kNever;
-  return std::min({phase_ == Phase::kRapid ? motors_end_ms() : resume_ms_, due, settled});
+  const bool motors_decide = phase_ == Phase::kRapid || phase_ == Phase::kHoming;
+  return std::min({shape_at_ms_, motors_decide ? motors_end_ms() : resume_ms_, due, settled});
 }
 
-/// When the last of its motors comes to rest.
+/// When the last of the motors that a rapid move or home search waits for comes to rest, as things stand.
 double CoordSystem::motors_end_ms() const {
-  double end_ms = resume_ms_;
-  for (int motor : motors_) {
+  double end_ms = phase_ == Phase::kIdle || phase_ == Phase::kPaused ? 0 : resume_ms_;
+  for (int motor : phase_ == Phase::kHoming ? home_motors_ : motors_) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    if (m.coord == number_ && m.source == Motor::Source::kProfile) end_ms = std::max(end_ms, m.profile_end_ms());
+    const bool counts = phase_ == Phase::kHoming || m.coord == number_;
+    if (counts && m.source == Motor::Source::kProfile) end_ms = std::max(end_ms, m.seeks_trigger() ? kNever : m.profile_end_ms());
   }
   return end_ms;
+}
+
+/// A rapid move or home search is complete.
+void CoordSystem::motors_arrived(double time_ms) {
+  const bool axes_elsewhere = phase_ == Phase::kHoming || rapid_.trigger_axes != 0;
+  report_rapid(time_ms);
+  home_motors_.clear();
+  phase_ = Phase::kCalculating;
+  if (const std::string refusal = axes_elsewhere ? match_positions(time_ms) : std::string(); !refusal.empty())
+    return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
+  go_on(time_ms);
 }
 
 void CoordSystem::service(double time_ms) {
   perform_due(time_ms);
   record_executed(time_ms);
-  if (phase_ == Phase::kRapid && motors_end_ms() > time_ms) return;
+  if (shape_at_ms_ <= time_ms) shape_rate(time_ms);
+  if (rapid_open_ && !program_running() && motors_end_ms() <= time_ms) report_rapid(time_ms);
   for (int steps = 0; resume_ms_ <= time_ms; ++steps) {
     if (steps == kMaxStepsAtOneTime) {
       resume_ms_ = machine_.next_rti_ms(time_ms);
@@ -341,10 +363,10 @@ void CoordSystem::service(double time_ms) {
         go_on(time_ms);
         break;
       case Phase::kRapid:
+      case Phase::kHoming:
         if (motors_end_ms() > time_ms) return;
-        for (int motor : motors_) machine_.motors[static_cast<std::size_t>(motor)].settle(time_ms);
-        record({"rapid", item_source_, number_, -1, item_start_ms_, time_ms, rapid_length_uu_});
-        go_on(time_ms);
+        for (int motor : motors_) service_motor(machine_, machine_.motors[static_cast<std::size_t>(motor)]);
+        motors_arrived(time_ms);
         break;
     }
   }
@@ -418,6 +440,7 @@ void CoordSystem::at_rest(double time_ms) {
         return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
       go_on(time_ms);
       break;
+    case AfterRest::kHome: start_homing(time_ms); break;
     case AfterRest::kPositions:
       if (const std::string refusal = change_positions(time_ms, position_change_); !refusal.empty())
         return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
@@ -461,39 +484,24 @@ void CoordSystem::start_dwell(double time_ms) {
   resume_ms_ = time_ms + dwell_ms_;
 }
 
-void CoordSystem::start_rapid(double time_ms) {
-  const motion::MotorMap map = motor_map();
-  std::vector<double> target(map.motors.size());
-  if (auto fault = motors_from_axes(rapid_target_uu_, target.data(), item_source_)) return fail(time_ms, std::move(*fault));
+void CoordSystem::start_homing(double time_ms) {
   perform_up_to(next_id_++);
-  const ElementStore& e = machine_.elements;
-  const bool equal_times = e.get(ElementId::kCoordRapidVelCtrl, static_cast<unsigned>(number_)) != 0;
-  double longest_cruise_ms = 0;
-  std::vector<motion::JogParameters> parameters;
-  for (std::size_t i = 0; i < map.motors.size(); ++i) {
-    const auto n = static_cast<unsigned>(map.motors[i]);
-    const bool at_max = e.get(ElementId::kMotorRapidSpeedSel, n) != 0;
-    parameters.push_back({e.get(at_max ? ElementId::kMotorMaxSpeed : ElementId::kMotorJogSpeed, n), e.get(ElementId::kMotorJogTa, n),
-                          e.get(ElementId::kMotorJogTs, n)});
-    if (!(parameters[i].speed_mu_ms > 0))
-      return fail(time_ms, {FaultKind::kBadTarget, item_source_,
-                            fmt::format("Motor[{}].{} is not above 0; a rapid move needs a speed", n, at_max ? "MaxSpeed" : "JogSpeed")});
-    longest_cruise_ms = std::max(longest_cruise_ms, std::abs(target[i] - machine_.motors[n].position_at(time_ms)) / parameters[i].speed_mu_ms);
+  phase_ = Phase::kHoming;
+  resume_ms_ = time_ms;
+  for (int motor : home_motors_) {
+    Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    const bool elsewhere = m.coord >= 0 && m.coord != number_ && machine_.coord(m.coord).program_running();
+    std::string refusal;
+    if (!m.closed_loop) refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", motor);
+    else if (elsewhere) refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}", motor, m.coord);
+    else refusal = home(machine_, m, item_source_);
+    if (!refusal.empty()) return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
   }
-  const TimeBase* clock = clock_for_motion(time_ms);
-  for (std::size_t i = 0; i < map.motors.size(); ++i) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(map.motors[i])];
-    const double from = m.position_at(time_ms);
-    if (from == target[i]) continue;
-    if (equal_times) parameters[i].speed_mu_ms = std::abs(target[i] - from) / longest_cruise_ms;  // the same D/V for all
-    m.follow(motion::MotorProfile::move(clock->path_at(time_ms), from, 0, target[i], parameters[i]), clock);
-  }
-  double length2 = 0;
-  for (std::size_t axis = 0; axis < rapid_target_uu_.size(); ++axis)
-    length2 += (rapid_target_uu_[axis] - calculated_uu_[axis]) * (rapid_target_uu_[axis] - calculated_uu_[axis]);
-  calculated_uu_ = rapid_target_uu_;
-  item_start_ms_ = time_ms;
-  rapid_length_uu_ = std::sqrt(length2);
+}
+
+void CoordSystem::start_rapid(double time_ms) {
+  perform_up_to(next_id_++);
+  if (auto fault = move_rapid(time_ms, rapid_)) return fail(time_ms, std::move(*fault));
   phase_ = Phase::kRapid;
   resume_ms_ = time_ms;
 }
@@ -569,7 +577,8 @@ void CoordSystem::report_unfinished(double time_ms, bool go_on) {
     const auto& [timing, mode, source] = executed_.front();
     report(mode, source, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu);
   }
-  if (phase_ == Phase::kRapid) report("rapid", item_source_, item_start_ms_, motors_end_ms(), rapid_length_uu_);
+  if (rapid_open_) report("rapid", rapid_.source, rapid_start_ms_, motors_end_ms(), rapid_length_uu_);
+  rapid_open_ = false;
 }
 
 void CoordSystem::perform_due(double time_ms) {

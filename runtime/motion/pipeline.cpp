@@ -236,6 +236,8 @@ void Pipeline::sample(double start_ms, double period_ms, int count, std::span<do
   state_->timeline.sample(start_ms, period_ms, count, position_mu, velocity_mu_ms);
 }
 
+void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
+
 SourceLine Pipeline::executing_source(double time_ms) const { return state_->timeline.source_at(time_ms); }
 
 const AxisVector& Pipeline::calculated_position() const { return state_->planner.position(); }

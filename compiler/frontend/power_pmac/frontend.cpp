@@ -28,6 +28,8 @@ void Frontend::know_name(const std::string& name) { state_->names.global.insert(
 
 std::vector<std::string> Frontend::known_names() const { return {state_->names.global.begin(), state_->names.global.end()}; }
 
+void Frontend::record_lines() { state_->preprocessor.record_lines(); }
+const std::vector<SourceLine>& Frontend::recorded_lines() const { return state_->preprocessor.recorded(); }
 const std::vector<MacroDefinition>& Frontend::macro_definitions() const { return state_->preprocessor.definitions(); }
 
 ir::Unit Frontend::read(const std::string& name, std::string text) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/frontend/power_pmac/macro_definition.h"
+#include "compiler/frontend/power_pmac/source_line.h"
 #include "compiler/ir/ir.h"
 #include "compiler/source/source.h"
 
@@ -22,6 +23,9 @@ class Frontend {
   /// Names that declarations of all texts so far mention, right or wrong.
   std::vector<std::string> known_names() const;
 
+  /// From now on every source line that counts is kept, for pmacc -E.
+  void record_lines();
+  const std::vector<SourceLine>& recorded_lines() const;
   /// Every #define so far, in order.
   const std::vector<MacroDefinition>& macro_definitions() const;
 

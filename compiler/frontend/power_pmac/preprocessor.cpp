@@ -111,9 +111,7 @@ void Preprocessor::define(const std::string& name, const std::string& text) {
   const std::int32_t file = sources_.add_file("<command line>", name + " " + (text.empty() ? "1" : text));
   const std::string& whole = sources_.file(file).text;
   const auto size = static_cast<std::uint32_t>(whole.size());
-  const Tokens line = split_tokens(whole, {file, 0, size, -1});
-  if (recording_) recorded_.push_back({SourceLine::Kind::kDefinition, split_tokens(sources_.file(sources_.add_file("<command line>", "#define " + whole + "\n")).text, {}), file});
-  define_directive(line, 0, {file, 0, size, -1});
+  define_directive(split_tokens(whole, {file, 0, size, -1}), 0, {file, 0, size, -1});
 }
 
 void Preprocessor::run_file(std::int32_t file) {

@@ -9,6 +9,7 @@
 
 #include "compiler/frontend/power_pmac/macro_definition.h"
 #include "compiler/frontend/power_pmac/macros.h"
+#include "compiler/frontend/power_pmac/source_line.h"
 #include "compiler/source/source.h"
 
 namespace pmac::compiler::power_pmac {
@@ -27,14 +28,6 @@ class ExpandedText {
   source::Span span_at(std::size_t offset) const;
   std::string text_;
   std::vector<Segment> segments_;
-};
-
-/// What becomes of the lines of the load stream, for pmacc -E: text and directives that count, and where files begin and end.
-struct SourceLine {
-  enum class Kind : std::uint8_t { kText, kDefinition, kFileBegins, kFileEnds };
-  Kind kind = Kind::kText;
-  PreprocessorTokens tokens;   // without comments, macros not expanded; #define and #undef of kDefinition
-  std::int32_t file = -1;
 };
 
 class Preprocessor {

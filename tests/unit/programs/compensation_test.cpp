@@ -24,6 +24,7 @@ std::pair<double, double> distances(const ProgramBench& bench, const std::vector
   return {least, greatest};
 }
 
+// The corners with lead-in and lead-out are blended over 50 ms on either side, so the distances are looked at in between.
 const std::vector<Element> kSquare = {{0, 0, 0, 10}, {0, 10, 10, 10}, {10, 10, 10, 0}, {10, 0, 0, 0}};
 const std::string kAroundTheSquare = "X0 Y0\nY10\nX10\nY0\nX0\nccmode0 X-5";
 
@@ -38,7 +39,7 @@ TEST_CASE("compensation: the tool goes round a square at its radius, with an arc
   CHECK(bench.moves[3].mode == "added");
   CHECK(bench.moves[3].length == Approx(std::numbers::pi).margin(1e-9));
   CHECK(bench.moves[3].source.line == bench.moves[2].source.line);
-  const auto [least, greatest] = distances(bench, kSquare, bench.moves[2].start_ms, bench.moves[8].end_ms);
+  const auto [least, greatest] = distances(bench, kSquare, bench.moves[2].start_ms + 50, bench.moves[8].end_ms - 50);
   CHECK(least > 2 - 1e-6);
   CHECK(greatest < 2 + 1e-6);
   CHECK(last(bench, 1) == Approx(-5.0).margin(1e-9));
@@ -48,7 +49,7 @@ TEST_CASE("compensation: a mirrored program keeps its tool on the same side of t
   const Lines bench("Tdata[1].Diag[6]=-1 tsel 1 X0 Y-5\nccr2 ccmode1\n" + kAroundTheSquare, kSegments);
   REQUIRE(bench.faults.empty());
   const std::vector<Element> mirrored = {{0, 0, 0, 10}, {0, 10, -10, 10}, {-10, 10, -10, 0}, {-10, 0, 0, 0}};
-  const auto [least, greatest] = distances(bench, mirrored, bench.moves[2].start_ms, bench.moves[8].end_ms);
+  const auto [least, greatest] = distances(bench, mirrored, bench.moves[2].start_ms + 50, bench.moves[8].end_ms - 50);
   CHECK(least > 2 - 1e-6);
   CHECK(greatest < 2 + 1e-6);
   CHECK(last(bench, 1) == Approx(5.0).margin(1e-9));
@@ -57,7 +58,7 @@ TEST_CASE("compensation: a mirrored program keeps its tool on the same side of t
 TEST_CASE("compensation: ccr is in program units", "[programs][cc]") {
   const Lines bench("Tdata[1].Diag[6]=25.4 Tdata[1].Diag[7]=25.4 tsel 1 X0 Y-5\nccr2 ccmode1\n" + kAroundTheSquare, kSegments);
   REQUIRE(bench.faults.empty());
-  const auto [least, greatest] = distances(bench, kSquare, bench.moves[2].start_ms, bench.moves[8].end_ms, 25.4);
+  const auto [least, greatest] = distances(bench, kSquare, bench.moves[2].start_ms + 50, bench.moves[8].end_ms - 50, 25.4);
   CHECK(least > 2 - 1e-6);
   CHECK(greatest < 2 + 1e-6);
   CHECK(bench.moves[3].end_ms - bench.moves[3].start_ms == Approx(std::numbers::pi / 10 * 1000).margin(1e-6));  // F10, too

@@ -16,7 +16,7 @@ std::string library() {
   return text;
 }
 
-/// Machine position at the first sample at or after each move's end.
+/// Machine position at the first sample at or after each move's end: a servo cycle of 0.44 ms at most, 9 um where an added arc follows at 20 mm/s.
 std::vector<Point> move_ends_mm(const ProgramBench& bench) {
   std::vector<Point> ends = {{0, 0, 0}};
   for (const auto& move : bench.moves) {
@@ -42,7 +42,7 @@ TEST_CASE("G-code library: the sample part ends every move where rs274 does", "[
     const bool is_lead_in = std::abs(expected[i][0] + 3) < 1e-3 && std::abs(expected[i][1] + 9.5597) < 1e-3;
     if (is_lead_in) continue;  // the two controllers lead in differently; both reach the offset line x = -3
     INFO("move end " << i << ": " << found[i][0] << " " << found[i][1] << " " << found[i][2] << ", expected " << expected[i][0] << " " << expected[i][1] << " " << expected[i][2]);
-    for (std::size_t axis = 0; axis < 3; ++axis) CHECK(found[i][axis] == Approx(expected[i][axis]).margin(0.005));
+    for (std::size_t axis = 0; axis < 3; ++axis) CHECK(found[i][axis] == Approx(expected[i][axis]).margin(0.01));
   }
   CHECK(found.size() == expected.size());
 }
