@@ -7,6 +7,7 @@
 #include "compiler/compiler.h"
 #include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/ir/ir.h"
+#include "compiler/sema/lint/lint.h"
 #include "compiler/sema/sema.h"
 #include "compiler/session_state.h"
 
@@ -53,6 +54,7 @@ std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& file
     if (unit.clear_all.valid() && has_programs) diagnostics.warning("PM5002", unit.clear_all, "clear all buffers empties the programs of this file; those that were loaded before it stay");
     has_programs = has_programs || !unit.buffers.empty();
   }
+  if (!online && !diagnostics.has_errors()) sema::lint(units, project, diagnostics);
   if (!online) warning_control.report_comments(first_file, !diagnostics.has_errors(), diagnostics);
   return units;
 }
