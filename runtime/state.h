@@ -167,10 +167,6 @@ std::string read_axes(Machine::State& state, int coord, bytecode::ControlVerb ve
 /// Value of a status element at the present time, or of a stored one (status.cpp).
 double read_element_value(Machine::State& state, Runner& runner, const ElementAddress& address);
 
-/// Answers to #n? and &n?: two words in hex. Bits that the simulation does not compute are 0. Layout: public drivers.
-std::string motor_status_words(Machine::State& state, const Motor& motor);
-std::string coord_status_words(Machine::State& state, int coord);
-
 std::unique_ptr<Host> make_host(Machine::State& state);
 
 }  // namespace pmac::runtime

@@ -2,8 +2,6 @@
 // User's Manual p683-694; in-position, training material.
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "compiler/bytecode/element.h"
 #include "runtime/state.h"
 
@@ -80,40 +78,23 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
 
 bool belongs_to(ElementId id, ElementId first, ElementId last) { return id >= first && id <= last; }
 
-}  // namespace
+/// Triggers, limits and faults of a coordinate system: those of any of its motors. The rows of the status words above bit 16.
+struct AnyMotorRow { int bit; ElementId coord, motor; };
+constexpr AnyMotorRow kAnyMotor[] = {
+#define MOTOR_STATUS_BIT(bit, name)
+#define COORD_STATUS_BIT(bit, name) {bit, ElementId::kCoord##name, ElementId::kMotor##name},
+#include "runtime/status_bit.def"
+#undef MOTOR_STATUS_BIT
+#undef COORD_STATUS_BIT
+};
 
-namespace {
-
-struct StatusBit { int bit; ElementId motor; };
-/// Of the first word; a coordinate system has the same for all its motors, or any of them.
-constexpr StatusBit kStatusBits[] = {
-    {31, ElementId::kMotorTriggerMove}, {30, ElementId::kMotorHomeInProgress}, {29, ElementId::kMotorMinusLimit}, {28, ElementId::kMotorPlusLimit},
-    {27, ElementId::kMotorFeWarn},      {26, ElementId::kMotorFeFatal},        {25, ElementId::kMotorLimitStop},  {24, ElementId::kMotorAmpFault},
-    {20, ElementId::kMotorTriggerNotFound}, {15, ElementId::kMotorHomeComplete}, {14, ElementId::kMotorDesVelZero}, {13, ElementId::kMotorClosedLoop},
-    {12, ElementId::kMotorAmpEna},      {11, ElementId::kMotorInPos},          {8, ElementId::kMotorPhaseFound}};
-
-std::uint32_t first_word(Machine::State& s, const Motor& m) {
-  std::uint32_t word = 0;
-  for (const StatusBit& row : kStatusBits)
-    if (motor_value(s, row.motor, m) != 0) word |= 1u << row.bit;
-  return word;
+bool any_motor(Machine::State& s, const CoordSystem& c, ElementId id) {
+  for (int motor : c.motors())
+    if (motor_value(s, id, s.motors[static_cast<std::size_t>(motor)]) != 0) return true;
+  return false;
 }
 
 }  // namespace
-
-std::string motor_status_words(Machine::State& s, const Motor& m) { return fmt::format("${:08x}{:08x}", first_word(s, m), 0); }
-
-std::string coord_status_words(Machine::State& s, int coord) {
-  constexpr std::uint32_t kAnyOfThem = 0xfff00000u;   // triggers, limits, faults; the others hold for all motors
-  std::uint32_t any = 0, all = ~0u;
-  for (int motor : s.coord(coord).motors()) {
-    const std::uint32_t word = first_word(s, s.motors[static_cast<std::size_t>(motor)]);
-    any |= word;
-    all &= word;
-  }
-  if (s.coord(coord).motors().empty()) all = 0;
-  return fmt::format("${:08x}{:08x}", (any & kAnyOfThem) | (all & ~kAnyOfThem), 0);
-}
 
 double read_element_value(Machine::State& s, Runner& runner, const ElementAddress& a) {
   switch (a.id) {
@@ -142,6 +123,8 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
   if (bytecode::element_info(a.id).type == bytecode::ElementType::kSymbol) return encode_address(a);  // Sys.pushm is where it is
   if (belongs_to(a.id, ElementId::kMotorServoCtrl, ElementId::kMotorCoord)) return motor_value(s, a.id, s.motors[a.index[0]]);
   if (belongs_to(a.id, ElementId::kCoordTa, ElementId::kCoordCdPos)) return coord_value(s, a);
+  for (const AnyMotorRow& row : kAnyMotor)
+    if (row.coord == a.id && row.bit > 16) return any_motor(s, s.coord(static_cast<int>(a.index[0])), row.motor);
   return s.elements.get(a);
 }
 
