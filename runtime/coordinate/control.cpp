@@ -39,8 +39,11 @@ std::string CoordSystem::begin(std::uint32_t number, std::int64_t label) {
 }
 
 std::string CoordSystem::run(double time_ms) {
-  if (phase_ == Phase::kPaused || time_base_.hold_state(time_ms) != TimeBase::Hold::kNone) return resume(time_ms);
+  const TimeBase::Hold hold = time_base_.hold_state(time_ms);
+  const bool held = hold == TimeBase::Hold::kHeld || hold == TimeBase::Hold::kSlowing;
+  if (phase_ == Phase::kPaused || (held && program_running())) return resume(time_ms);
   if (program_running()) return "error #38: PROGRAM RUNNING: the coordinate system executes a program already";
+  if (held) time_base_.clear_hold(time_ms);   // of a program that has ended since
   return start(time_ms);
 }
 

@@ -78,6 +78,7 @@ void TimeBase::slew_to(double time_ms, double rate, double slope_per_ms) {
 void TimeBase::set_override(double time_ms, double rate, double slope_per_ms) {
   override_ = rate;
   const Hold hold = hold_state(time_ms);
+  if (hold == Hold::kNone) hold_ = Hold::kNone;   // what it was going on after is over
   if (hold == Hold::kNone || hold == Hold::kResuming) slew_to(time_ms, rate, slope_per_ms);
 }
 

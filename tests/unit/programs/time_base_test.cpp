@@ -106,6 +106,19 @@ TEST_CASE("a program that nobody can resume ends the run", "[programs]") {
   REQUIRE(outcome.running.size() == 1);
 }
 
+TEST_CASE("an override after a hold that is over is no going on, and keeps no program from starting", "[programs]") {
+  ProgramBench bench("a.pmc", kSetUp + "Coord[1].FeedHoldSlew=0.01\n");
+  bench.machine->at(50, "&1 h");
+  bench.machine->at(300, "&1 r");
+  bench.machine->at(2000, "&1 %50");
+  bench.machine->at(2010, "Coord[1].FeedHold");
+  bench.machine->at(2020, "&1 r");
+  bench.run("&1 b2r");
+  CHECK(bench.refusals.empty());
+  CHECK(bench.answers == std::vector<std::string>{"Coord[1].FeedHold=0"});
+  CHECK(bench.moves.size() == 8);
+}
+
 TEST_CASE("a PLC program holds, looks and goes on", "[programs]") {
   ProgramBench bench("a.pmc", kSetUp + "Coord[1].FeedHoldSlew=0.01\nopen plc 1\n"
       "if (Sys.Time >= 0.3 && P1 == 0) { hold1 P1=1 }\nif (Sys.Time >= 0.9 && P1 == 1) { resume1 P1=2 disable plc 1 }\nclose\n");
