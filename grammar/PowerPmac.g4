@@ -26,14 +26,14 @@ tokens {
   DEFAULT, DELAY, DO, DREAD, DWELL, ELSE, FRAX, FRAX2, FREAD, GOSUB, GOTO, IF, INC, LINEAR, NOFRAX, NOFRAX2, NORMAL, PCLR, PLOAD,
   PREAD, PSET, PSTORE, PVT, RAPID, READ, RETURN, SPLINE, STOP, SWITCH, TA, TD, TM, TREAD, TS, TSD, TSEL, VREAD, WHILE,
   // keywords of on-line commands; COMMAND is one that takes no argument (r, run, q, hm, ...)
-  COMMAND, ON_B, ON_J, ON_OUT, CLEAR, CX, DEFINE, DELETE, LOOKAHEAD, ECHO, OTHER_COMMAND
+  COMMAND, ON_B, ON_J, ON_OUT, CLEAR, CX, DEFINE, DELETE, LOOKAHEAD, ECHO, OTHER_COMMAND, ALL
 }
 
 // --- a load stream --------------------------------------------------------------------------------------------------------
 
 file : (buffer | online | ';')* EOF ;
 
-buffer : openHeader (entryPoint | statement | ';')* CLOSE ;
+buffer : openHeader (entryPoint | statement | ';')* CLOSE ALL* ;
 
 openHeader
   : OPEN (kind=(PROG | PLC | SUBPROG) bufferName parameters? (',' NUMBER)*
@@ -224,13 +224,16 @@ online
   | '#' numberList? ('->' ({sameLine()}? axisDefinition)?)?
   | (COORD | '&') numberList?
   | LETTER_M NUMBER (',' NUMBER)? '->' ({sameLine()}? pointerTarget)?
+  | LETTER_I NUMBER '->'
+  | variable RANGE NUMBER
   | reference '->' ({sameLine()}? pointerTarget)?
   | assignment
   | onlineListAssignment
   | lvalue
-  | CLOSE
+  | CLOSE ALL*
   | DEFINE LOOKAHEAD NUMBER (',' NUMBER)?
   | DELETE LOOKAHEAD
+  | kind=(DEFINE | DELETE) ROTARY NUMBER?
   | CLEAR ({sameLine()}? (kind=(PROG | PLC | SUBPROG) bufferName | NAME NAME))?
   | CX (statement | ';')* LINE_END
   | COMMAND

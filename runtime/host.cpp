@@ -1,6 +1,7 @@
 // What a program reaches outside its registers: variables through pointers, elements, motion, commands. Each call knows its runner.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -8,7 +9,9 @@
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
 #include "compiler/bytecode/operators.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
+#include "runtime/value_text.h"
 
 namespace pmac::runtime {
 namespace {
@@ -54,9 +57,15 @@ class MachineHost : public Host {
     }
   }
 
-  double read_i(Thread&, int number) override { return s_.i_values[static_cast<std::size_t>(number)]; }
+  double read_i(Thread& thread, int number) override {
+    const bytecode::IVariable alias = bytecode::i_variable(number);
+    if (alias.id == bytecode::kNoElement) return s_.i_values[static_cast<std::size_t>(number)];
+    return read_element(thread, {alias.id, {alias.index, 0, 0}});
+  }
   void write_i(Thread& thread, int number, double value) override {
-    s_.warn(thread.source(), "I variables are plain variables here and set no element; assign the element by its name");
+    const bytecode::IVariable alias = bytecode::i_variable(number);
+    if (alias.id != bytecode::kNoElement) return void(write_element(thread, {alias.id, {alias.index, 0, 0}}, value));
+    if (number < kFirstFreeI) s_.warn(thread.source(), fmt::format("I{} is a plain variable here and sets no element", number));
     s_.i_values[static_cast<std::size_t>(number)] = value;
   }
 
@@ -70,8 +79,9 @@ class MachineHost : public Host {
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers) override {
     Runner& runner = Runner::of(thread);
     if (runner.kind == RunnerKind::kMotionProgram) return s_.coord(runner.number).motion(thread, instruction, registers);
+    if (runner.kind == RunnerKind::kPlc) return plc_motion(thread, instruction, registers);
     if (is_block_word(instruction.op))
-      return fault(thread, FaultKind::kNotSimulated, "axis moves, dwells and delays are simulated in motion programs only");
+      return fault(thread, FaultKind::kNotSimulated, "axis moves, dwells and delays are simulated in motion and PLC programs only");
     return s_.coord(thread.coord).motion(thread, instruction, registers);
   }
 
@@ -125,6 +135,7 @@ class MachineHost : public Host {
 
  private:
   static constexpr std::size_t kMaxQueuedCommands = 10'000;
+  static constexpr int kFirstFreeI = 8192;
 
   static bool is_block_word(Opcode op) {
     return op == Opcode::kAxisWord || op == Opcode::kBlockEnd || op == Opcode::kDwell || op == Opcode::kDelay;
@@ -133,6 +144,22 @@ class MachineHost : public Host {
   static Flow fault(Thread& thread, FaultKind kind, std::string detail) {
     thread.set_host_fault({kind, thread.source(), std::move(detail)});
     return Flow::kFault;
+  }
+
+  /// Axis moves of a PLC program are rapid moves that it does not wait for; dwell and delay do not make it wait. User's Manual p687-688.
+  Flow plc_motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers) {
+    OpenBlock& block = s_.plcs[static_cast<std::size_t>(Runner::of(thread).number)].block;
+    switch (instruction.op) {
+      case Opcode::kAxisWord:
+        block.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), registers[instruction.a]);
+        return Flow::kContinue;
+      case Opcode::kBlockEnd: return s_.coord(thread.coord).plc_move(thread, std::exchange(block, {}));
+      case Opcode::kDwell:
+      case Opcode::kDelay:
+        s_.warn(thread.source(), "dwell and delay do not wait in a PLC program; count down Sys.CdTimer[] or compare Sys.Time");
+        return Flow::kContinue;
+      default: return s_.coord(thread.coord).motion(thread, instruction, registers);
+    }
   }
 
   double read_field(Thread& thread, const PointerEntry& pointer) {
@@ -156,6 +183,7 @@ class MachineHost : public Host {
   Flow enable_gathering(Thread& thread, double value);
   void define_axis(Thread& thread, const bytecode::AxisDefinition& definition);
   void define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition);
+  void report_element(const bytecode::ElementRef& ref, double value);
   void install(Thread& thread, const bytecode::Program& program);
 
   Machine::State& s_;
@@ -207,6 +235,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kMotorHomePos: s_.motors[a.index[0]].home_position_mu = value; return Flow::kContinue;
     case ElementId::kMotorHomeComplete: s_.motors[a.index[0]].home_complete = value != 0; return Flow::kContinue;
     case ElementId::kGatherEnable: return enable_gathering(thread, value);
+    case ElementId::kCoordLHSize: s_.coord(static_cast<int>(a.index[0])).lookahead_buffer = value >= 1 && value <= 1e8 ? static_cast<int>(value) : 0; break;
     case ElementId::kCoordDesTimeBase: {
       const std::string refusal = s_.coord(static_cast<int>(a.index[0])).set_time_base(s_.now_ms, value / s_.period_ms());
       if (refusal.empty()) return Flow::kContinue;
@@ -228,6 +257,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     default: break;
   }
   s_.elements.assign(a, value);
+  if (a.id == ElementId::kSimMotorTriggerPos) trigger_moved(s_, s_.motors[a.index[0]]);
   return Flow::kContinue;
 }
 
@@ -271,16 +301,29 @@ Flow MachineHost::online(Thread& thread, const bytecode::Module& module, const b
     case Opcode::kExecuteProgram:
       if (const std::string refusal = s_.coord(thread.coord).execute({s_.loading, &module.programs[index]}, s_.now_ms); !refusal.empty()) s_.refuse("cx", refusal);
       return Flow::kContinue;
-    case Opcode::kReport: s_.answer(fmt::format("{}={}", module.strings[index], r[instruction.a])); return Flow::kContinue;
+    case Opcode::kReport: answer_value(s_, module.strings[index], double_text(r[instruction.a])); return Flow::kContinue;
+    case Opcode::kReportElement: report_element(module.element_refs[index], r[instruction.a]); return Flow::kContinue;
+    case Opcode::kSystemCommand:
+      if (const std::string refusal = execute_system_command(s_, thread, module.strings[index]); !refusal.empty())
+        s_.refuse(module.strings[index], refusal);
+      return Flow::kContinue;
     default: return fault(thread, FaultKind::kNotSimulated, "this command is not simulated");
   }
+}
+
+void MachineHost::report_element(const bytecode::ElementRef& ref, double value) {
+  ElementAddress address{ref.id, {}};
+  for (std::size_t i = 0; i < address.index.size(); ++i) address.index[i] = ref.index[i].value;
+  const auto type = ref.address ? bytecode::ElementType::kAddress : element_info(ref.id).type;
+  answer_value(s_, element_text(address) + (ref.address ? ".a" : ""), value_text(type, value));
 }
 
 void MachineHost::define_axis(Thread& thread, const bytecode::AxisDefinition& definition) {
   const int motor = definition.motor >= 0 ? definition.motor : thread.motor;
   if (motor >= bytecode::kMaxMotors) return s_.refuse(fmt::format("#{}->", motor), "error #23: OUT OF RANGE NUMBER: no such motor");
   if (const std::string refusal = s_.coord(thread.coord).define(definition, motor); !refusal.empty())
-    s_.refuse(fmt::format("&{}#{}->", thread.coord, motor), refusal);
+    return s_.refuse(fmt::format("&{}#{}->", thread.coord, motor), refusal);
+  s_.axis_definitions[motor] = {thread.coord, motor, definition};
 }
 
 void MachineHost::define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition) {
@@ -320,7 +363,7 @@ void Machine::State::perform(const SyncEntry& entry, CoordSystem& from) {
     case VariableClass::kP: p[number] = with(p[number]); break;
     case VariableClass::kQ: from.q[number] = with(from.q[number]); break;
     case VariableClass::kM: host->write_m(thread, entry.target.number, with(host->read_m(thread, entry.target.number))); break;
-    case VariableClass::kI: i_values[number] = with(i_values[number]); break;
+    case VariableClass::kI: host->write_i(thread, entry.target.number, with(host->read_i(thread, entry.target.number))); break;
     case VariableClass::kElement: host->write_element(thread, entry.element, with(host->read_element(thread, entry.element))); break;
     default: break;  // L, R, C, D are refused by the compiler as synchronous targets
   }

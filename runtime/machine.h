@@ -73,6 +73,8 @@ struct MachineOptions {
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
   OnlineCompiler compile_online;                              // cmd "...", --at, console
+  /// A line of a source file, for list; empty where the owner has no source.
+  std::function<std::optional<std::string>(const std::string& file, int line)> source_text;
   MachineObservers observers;
   std::uint64_t max_instructions = 20'000'000'000;            // of a whole run
 };
@@ -84,6 +86,7 @@ struct RunLimits {
   double max_ms = 3'600'000;
   double idle_ms = 10;
   std::function<bool()> interrupted;
+  bool more_follows = false;        // another run goes on from here: nothing is closed or sampled beyond the end
 };
 
 struct RunOutcome {

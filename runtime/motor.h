@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "compiler/bytecode/bytecode.h"
 #include "runtime/coordinate/time_base.h"
@@ -13,6 +14,8 @@ namespace pmac::runtime {
 
 struct Motor {
   enum class Source { kRest, kProfile, kPath };  // kPath: its coordinate system's pipeline
+  /// What its profile is part of: up to the trigger, or back to it.
+  enum class Task { kNone, kSeekTrigger, kSeekHome, kReturnHome };
 
   int number = 0;
   Source source = Source::kRest;
@@ -26,12 +29,23 @@ struct Motor {
   bool closed_loop = true, amplifier_enabled = true, home_complete = true;
   double jog_start_ms = 0, jog_start_mu = 0;  // of the jog that is under way
   bytecode::SourceLine jog_source;
+  std::string_view jog_mode = "jog";
   bool jogging = false;
+  Task task = Task::kNone;
+  double trigger_at = kNever;      // when the profile passes the trigger, in the time of the clock
+  double trigger_distance_mu = 0;  // where it goes then, from the trigger
+  motion::JogParameters trigger_parameters{};
+  bool trigger_not_found = false;
+  bool kill_at_rest = false;       // adisable: a delayed kill when it has come to rest
+  double kill_ms = kNever;         // of a delayed kill
   bool in_use = false;             // belongs to a coordinate system, or has moved
   int coord = -1;                  // coordinate system it is defined in, -1 none
 
   bool moving() const { return source != Source::kRest; }
 
+  bool seeks_trigger() const { return task == Task::kSeekTrigger || task == Task::kSeekHome; }
+  bool homing() const { return task == Task::kSeekHome || task == Task::kReturnHome; }
+  double trigger_ms() const { return clock ? clock->time_at(trigger_at) : trigger_at; }
   double profile_time(double time_ms) const { return clock ? clock->path_at(time_ms) : time_ms; }
   double position_at(double time_ms) const {
     return source == Source::kProfile ? profile.position_mu(profile_time(time_ms)) : position_mu;
@@ -56,14 +70,27 @@ struct Motor {
   void follow(const motion::MotorProfile& p, const TimeBase* by = nullptr) {
     profile = p;
     clock = by;
+    task = Task::kNone;
     source = Source::kProfile;
     in_use = true;
   }
   void rest(double time_ms, double at_mu) {
     if (source != Source::kRest) rest_since_ms = time_ms;
     source = Source::kRest;
+    task = Task::kNone;
     position_mu = at_mu;
     velocity_mu_ms = 0;
+  }
+  /// Open loop; the ideal motor stands where it is.
+  void kill(double time_ms) {
+    rest(time_ms, position_at(time_ms));
+    closed_loop = amplifier_enabled = kill_at_rest = false;
+    kill_ms = kNever;
+  }
+  void enable() {
+    closed_loop = amplifier_enabled = true;
+    kill_at_rest = false;
+    kill_ms = kNever;
   }
   /// homez: home is where the motor stands.
   void home_here(double time_ms) {

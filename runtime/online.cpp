@@ -8,6 +8,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -92,14 +93,18 @@ Flow pset(const Call& call) {
   return Flow::kContinue;
 }
 
-/// Enabling closes the loops; disabling aborts the program and opens them, the motors stand where they are.
-void enable_motors(const Call& call, CoordSystem& coord, bool enabled) {
-  if (!enabled) coord.abort(call.s.now_ms);
+/// disable kills at once, ddisable after the brakes' delay, adisable when the motors have come to rest and after that delay. The program is
+/// aborted by all of them. The ideal motors stand where they are killed.
+Flow disable_motors(const Call& call, CoordSystem& coord, int number) {
+  const double now = call.s.now_ms;
+  const Flow flow = abort_coord(call, coord, number);
   for (int motor : coord.motors()) {
     Motor& m = call.s.motors[static_cast<std::size_t>(motor)];
-    m.closed_loop = m.amplifier_enabled = enabled;
-    if (!enabled) m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
+    if (call.verb == ControlVerb::kDisable) m.kill(now);
+    else if (call.verb == ControlVerb::kAbortDisable) m.kill_at_rest = true;
+    else delay_kill(call.s, m, now);
   }
+  return flow;
 }
 
 /// Starting, stopping and going on. A motion program that pauses or steps itself stops behind this line.
@@ -111,8 +116,8 @@ Flow program_verb(const Call& call, CoordSystem& coord, int number) {
     case ControlVerb::kRun: call.refusal = coord.run(now); break;
     case ControlVerb::kResume: call.refusal = coord.resume(now); break;
     case ControlVerb::kForward: call.refusal = coord.resume(now); break;
-    case ControlVerb::kHold:
-    case ControlVerb::kQuickStop: call.refusal = coord.hold(now); break;
+    case ControlVerb::kHold: call.refusal = coord.hold(now); break;
+    case ControlVerb::kQuickStop: call.refusal = coord.quick_stop(now); break;
     case ControlVerb::kPause:
       if (inside) return coord.pause_from_inside(r.thread);
       call.refusal = coord.pause(now);
@@ -159,119 +164,100 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kPload: return change_positions(call, coord, {call.verb});
     case ControlVerb::kDefineLookahead: define_lookahead(call, coord); return Flow::kContinue;
     case ControlVerb::kDeleteLookahead: coord.lookahead_buffer = 0; return Flow::kContinue;
-    case ControlVerb::kEnable: enable_motors(call, coord, true); return Flow::kContinue;
-    case ControlVerb::kDisable: enable_motors(call, coord, false); return Flow::kContinue;
-    case ControlVerb::kReportCoordPosition: {
-      const AxisVector position = coord.commanded_position(call.s.now_ms);
-      std::string text;
-      for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
-        if (coord.axes_with_motors() >> axis & 1u)
-          text += fmt::format("{}{}{}", text.empty() ? "" : " ", bytecode::axis_name(axis), position[static_cast<std::size_t>(axis)]);
-      call.s.answer(text);
+    case ControlVerb::kEnable:
+      for (int motor : coord.motors()) call.s.motors[static_cast<std::size_t>(motor)].enable();
       return Flow::kContinue;
-    }
+    case ControlVerb::kDisable:
+    case ControlVerb::kDelayedDisable:
+    case ControlVerb::kAbortDisable: return disable_motors(call, coord, number);
     default: return not_simulated(call);
   }
 }
 
-motion::JogParameters jog_parameters(const Machine::State& s, int motor) {
-  const auto n = static_cast<unsigned>(motor);
-  return {s.elements.get(ElementId::kMotorJogSpeed, n), s.elements.get(ElementId::kMotorJogTa, n), s.elements.get(ElementId::kMotorJogTs, n)};
-}
-
-/// Jogs of motors that belong to a coordinate system run by its time base. User's Manual p693.
-const TimeBase* clock_of(const Call& call, const Motor& m) {
-  return m.coord >= 0 ? call.s.coord(m.coord).clock_for_motion(call.s.now_ms) : nullptr;
-}
-
-double clock_ms(const TimeBase* clock, double time_ms) { return clock ? clock->path_at(time_ms) : time_ms; }
-
-/// Starts or re-targets a jog; a jog counts as one move from rest to rest.
-void jog(const Call& call, Motor& m, const motion::MotorProfile& profile, const TimeBase* clock) {
-  if (!m.moving()) {
-    m.jogging = true;
-    m.jog_start_ms = call.s.now_ms;
-    m.jog_start_mu = m.position_mu;
-    m.jog_source = call.runner.thread.source();
-  }
-  m.follow(profile, clock);
-}
-
-void jog_to(const Call& call, Motor& m, double target_mu) {
-  if (!std::isfinite(target_mu)) {
-    call.refusal = fmt::format("error #21: ILLEGAL PARAMETER: jog target {} of motor {}", target_mu, m.number);
-    return;
-  }
-  const double now = call.s.now_ms;
-  const TimeBase* clock = clock_of(call, m);
-  jog(call, m, motion::MotorProfile::move(clock_ms(clock, now), m.position_at(now), m.velocity_by(clock, now), target_mu,
-                                          jog_parameters(call.s, m.number), m.accel_by(clock, now)), clock);
-}
-
-void jog_stop(const Call& call, Motor& m) {
-  if (!m.moving()) return;
-  const double now = call.s.now_ms;
-  const TimeBase* clock = clock_of(call, m);
-  m.follow(motion::MotorProfile::stop(clock_ms(clock, now), m.position_at(now), m.velocity_by(clock, now), jog_parameters(call.s, m.number),
-                                      m.accel_by(clock, now)), clock);
-}
-
-void jog_endless(const Call& call, Motor& m, int direction) {
-  const double now = call.s.now_ms;
-  const TimeBase* clock = clock_of(call, m);
-  jog(call, m, motion::MotorProfile::jog(clock_ms(clock, now), m.position_at(now), m.velocity_by(clock, now), direction,
-                                         jog_parameters(call.s, m.number), m.accel_by(clock, now)), clock);
-}
-
 bool may_jog(const Call& call, const Motor& m) {
-  if (!(jog_parameters(call.s, m.number).speed_mu_ms > 0)) {
+  const bool jogs = call.verb >= ControlVerb::kJogPlus && call.verb <= ControlVerb::kJogByActualTrigger;
+  if (jogs && !(call.s.elements.get(ElementId::kMotorJogSpeed, static_cast<unsigned>(m.number)) > 0)) {
     call.refusal = fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].JogSpeed is not above 0", m.number);
     return false;
   }
-  if (!m.closed_loop) call.refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", m.number);
+  if (!m.closed_loop && call.verb != ControlVerb::kPhase) call.refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", m.number);
   else if (m.coord >= 0 && call.s.coord(m.coord).program_running())
     call.refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}, which executes a program", m.number, m.coord);
   return call.refusal.empty();
 }
 
-void kill(const Call& call, Motor& m) {
-  if (m.coord >= 0 && call.s.coord(m.coord).program_running()) call.s.coord(m.coord).abort(call.s.now_ms);
-  m.rest(call.s.now_ms, m.position_at(call.s.now_ms));
-  m.closed_loop = m.amplifier_enabled = false;
+/// A program that moves the motor is aborted. dkill: the brake engages first.
+Flow kill(const Call& call, Motor& m) {
+  const bool in_program = m.coord >= 0 && call.s.coord(m.coord).program_running();
+  const Flow flow = in_program ? abort_coord(call, call.s.coord(m.coord), m.coord) : Flow::kContinue;
+  if (call.verb == ControlVerb::kKill) m.kill(call.s.now_ms);
+  else delay_kill(call.s, m, call.s.now_ms);
+  return flow;
+}
+
+/// The phase search of an ideal motor succeeds without a move, and leaves it in closed loop.
+void phase(const Call& call, Motor& m) {
+  call.s.elements.set(ElementId::kMotorPhaseFound, 1, static_cast<unsigned>(m.number));
+  m.enable();
+}
+
+/// Open loop with no output leaves an ideal motor where it is; what it does under an output is mechanics, which is not simulated.
+Flow open_loop(const Call& call, Motor& m) {
+  if (call.argument(1) != 0)
+    call.refusal = fmt::format("error #20: ILLEGAL CMD: an open-loop output of {} % is not simulated; the motors have no mechanics (out0 is)", call.argument(1));
+  if (!call.refusal.empty()) return Flow::kContinue;
+  const bool in_program = m.coord >= 0 && call.s.coord(m.coord).program_running();
+  const Flow flow = in_program ? abort_coord(call, call.s.coord(m.coord), m.coord) : Flow::kContinue;
+  m.kill(call.s.now_ms);
+  m.amplifier_enabled = true;
+  return flow;
+}
+
+/// The jogs and home searches, which need a motor that is free to move.
+void move_motor(const Call& call, Motor& m) {
+  Machine::State& s = call.s;
+  const double now = s.now_ms;
+  const bytecode::SourceLine source = call.runner.thread.source();
+  const double value = std::isnan(call.argument(1)) ? s.elements.get(ElementId::kMotorProgJogPos, static_cast<unsigned>(m.number))
+                                                    : call.argument(1);
+  const double here = m.position_at(now);
+  switch (call.verb) {
+    case ControlVerb::kJogPlus: call.refusal = jog_endless(s, m, 1, source); break;
+    case ControlVerb::kJogMinus: call.refusal = jog_endless(s, m, -1, source); break;
+    case ControlVerb::kJogStop: jog_stop(s, m); break;
+    case ControlVerb::kJogTo: call.refusal = jog_to(s, m, value, source); break;
+    case ControlVerb::kJogToAndKeep: m.prejog_mu = value; call.refusal = jog_to(s, m, value, source); break;
+    case ControlVerb::kJogBy:
+    case ControlVerb::kJogByActual: call.refusal = jog_to(s, m, here + value, source); break;
+    case ControlVerb::kJogToTrigger: call.refusal = jog_to(s, m, value, source, call.argument(2)); break;
+    case ControlVerb::kJogByTrigger:
+    case ControlVerb::kJogByActualTrigger: call.refusal = jog_to(s, m, here + value, source, call.argument(2)); break;
+    case ControlVerb::kJogReturn: call.refusal = jog_to(s, m, m.prejog_mu, source); break;
+    case ControlVerb::kHome:
+    case ControlVerb::kHomeAlso: call.refusal = home(s, m, source); break;
+    case ControlVerb::kHomeZero: m.home_here(now); break;
+    case ControlVerb::kPhase: phase(call, m); break;
+    default: not_simulated(call);
+  }
 }
 
 Flow motor_verb(const Call& call) {
   const int number = number_or(call, call.runner.thread.motor, bytecode::kMaxMotors, "motor");
   if (number < 0) return Flow::kContinue;
   Motor& m = call.s.motors[static_cast<std::size_t>(number)];
-  const double now = call.s.now_ms;
   switch (call.verb) {
-    case ControlVerb::kReportPosition:
-    case ControlVerb::kReportDesired: call.s.answer(fmt::format("{}", m.position_at(now))); return Flow::kContinue;
-    case ControlVerb::kReportVelocity: call.s.answer(fmt::format("{}", m.velocity_at(now) * call.s.period_ms())); return Flow::kContinue;
-    case ControlVerb::kReportFollowingError: call.s.answer("0"); return Flow::kContinue;
-    case ControlVerb::kKill: kill(call, m); return Flow::kContinue;
+    case ControlVerb::kKill:
+    case ControlVerb::kDelayedKill: return kill(call, m);
+    case ControlVerb::kOpenLoop: return open_loop(call, m);
     default: break;
   }
-  if (call.verb == ControlVerb::kJogStop && !m.closed_loop) m.closed_loop = m.amplifier_enabled = true;  // j/ closes the loop
+  if (call.verb == ControlVerb::kJogStop && !m.closed_loop) m.enable();  // j/ closes the loop
   const bool own_program = call.runner.kind == RunnerKind::kMotionProgram && m.coord == call.runner.number;
+  const bool homes = call.verb == ControlVerb::kHome || call.verb == ControlVerb::kHomeAlso;
   if (call.verb == ControlVerb::kHomeZero && own_program) return call.s.coord(m.coord).home_zero(call.runner.thread, number);
-  if (call.verb == ControlVerb::kHome) return not_simulated(call);
-  if (!may_jog(call, m)) return Flow::kContinue;
-  const double value = std::isnan(call.argument(1)) ? call.s.elements.get(ElementId::kMotorProgJogPos, static_cast<unsigned>(number))
-                                                    : call.argument(1);
-  switch (call.verb) {
-    case ControlVerb::kJogPlus: jog_endless(call, m, 1); break;
-    case ControlVerb::kJogMinus: jog_endless(call, m, -1); break;
-    case ControlVerb::kJogStop: jog_stop(call, m); break;
-    case ControlVerb::kJogTo: jog_to(call, m, value); break;
-    case ControlVerb::kJogToAndKeep: m.prejog_mu = value; jog_to(call, m, value); break;
-    case ControlVerb::kJogBy:
-    case ControlVerb::kJogByActual: jog_to(call, m, m.position_at(now) + value); break;
-    case ControlVerb::kJogReturn: jog_to(call, m, m.prejog_mu); break;
-    case ControlVerb::kHomeZero: m.home_here(now); break;
-    default: return not_simulated(call);
-  }
+  if (homes && call.runner.kind == RunnerKind::kMotionProgram)
+    return call.s.coord(call.runner.number).home_motor(call.runner.thread, number, call.verb == ControlVerb::kHomeAlso);
+  if (may_jog(call, m)) move_motor(call, m);
   return Flow::kContinue;
 }
 
@@ -295,11 +281,19 @@ Flow plc_verb(const Call& call) {
       plc.runner = std::make_unique<Runner>(RunnerKind::kPlc, number, call.s.p.data(), call.s.coord(0).q.data());
       plc.runner->thread.ends_scans = true;
       plc.runner->thread.begin(buffer->second);
+      plc.block = {};
       plc.active = plc.running = true;
       break;
     case ControlVerb::kDisablePlc: plc.active = plc.running = false; break;
     case ControlVerb::kPausePlc: plc.running = false; break;
-    case ControlVerb::kResumePlc: plc.running = plc.active; break;
+    case ControlVerb::kResumePlc:
+      plc.running = plc.active;
+      plc.single_scan = false;
+      break;
+    case ControlVerb::kStepPlc:
+      if (!plc.active) call.refusal = fmt::format("error #39: NOT READY TO RUN: PLC program {} is not active; enable and pause it first", number);
+      plc.running = plc.single_scan = plc.active;
+      break;
     default: return not_simulated(call);
   }
   return Flow::kContinue;
@@ -353,14 +347,16 @@ std::vector<double> everything(Machine::State& s, ControlVerb verb) {
 Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
   std::vector<double> one(arguments.begin(), arguments.end());
   Flow result = Flow::kContinue;
-  for (const double number : everything(s, verb)) {
+  const std::vector<double> numbers = everything(s, verb);
+  for (const double number : numbers) {
     if (result == Flow::kSuspend) {
       refusal = fmt::format("error #21: ILLEGAL PARAMETER: the program waits for {}; list the motors instead of *", control_verb_name(verb));
       return Flow::kContinue;
     }
     one[0] = number;
     std::string reason;
-    const Flow flow = execute_control(s, runner, verb, one, reason);
+    const bool together = verb == ControlVerb::kHome && number != numbers.back();
+    const Flow flow = execute_control(s, runner, together ? ControlVerb::kHomeAlso : verb, one, reason);
     if (flow != Flow::kContinue) result = flow;
     if (refusal.empty()) refusal = reason;
   }
@@ -370,8 +366,12 @@ Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::s
 }  // namespace
 
 Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
-  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer;
+  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer && verb != ControlVerb::kReportAlias;
   if (all) return execute_for_all(s, runner, verb, arguments, refusal);
+  if (is_report(verb)) {
+    refusal = report(s, runner, verb, arguments);
+    return Flow::kContinue;
+  }
   const Call call{s, runner, verb, arguments, refusal};
   if (is_motor_verb(verb)) return motor_verb(call);
   if (is_plc_verb(verb)) return plc_verb(call);

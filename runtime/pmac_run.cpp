@@ -9,6 +9,7 @@
 
 #include "compiler/compiler.h"
 #include "runtime/machine.h"
+#include "runtime/tool/console.h"
 #include "runtime/tool/emit.h"
 #include "runtime/tool/load.h"
 #include "runtime/tool/options.h"
@@ -32,13 +33,15 @@ void catch_signals() {
 bool shows_progress(const RunOptions& options) { return !options.quiet && isatty(STDERR_FILENO) != 0; }
 
 /// Messages of the machine, as they come: faults and refusals on standard error, answers on standard output.
-runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine) {
+runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console) {
   runtime::MachineObservers o;
-  const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty();
-  o.answer = [quiet = options.quiet, answers_to_stderr](const std::string& text) {
-    if (!quiet) std::fprintf(answers_to_stderr ? stderr : stdout, "%s\n", text.c_str());
+  const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
+  o.answer = [quiet = options.quiet, answers_to_stderr, &console](const std::string& text) {
+    if (console.executing()) console.answer(text);
+    else if (!quiet) std::fprintf(answers_to_stderr ? stderr : stdout, "%s\n", text.c_str());
   };
-  o.refused = [&report](const std::string& text, const std::string& reason) {
+  o.refused = [&report, &console](const std::string& text, const std::string& reason) {
+    if (console.executing()) return console.refuse(reason);
     report.add_refusal(text, reason);
     std::fprintf(stderr, "refused: %s: %s\n", text.c_str(), reason.c_str());
   };
@@ -85,13 +88,26 @@ void explain_end(const RunOptions& options, const runtime::RunOutcome& outcome) 
   for (const std::string& program : outcome.running) std::fprintf(stderr, "  still running: %s\n", program.c_str());
 }
 
-int exit_code(const runtime::Machine& machine, const runtime::RunOutcome& outcome) {
+int exit_code(const runtime::Machine& machine, const Report& report, const runtime::RunOutcome& outcome) {
   switch (outcome.end) {
     case runtime::RunEnd::kTimeLimit:
     case runtime::RunEnd::kBudget: return kExitLimit;
     case runtime::RunEnd::kInterrupted: return kExitInterrupted;
-    default: return machine.any_fault() || machine.any_refused() ? kExitFault : kExitOk;
+    default: return machine.any_fault() || report.any_refused() ? kExitFault : kExitOk;
   }
+}
+
+/// The console first, until its input ends; then the run goes on as without one.
+runtime::RunOutcome run_machine(const RunOptions& options, runtime::Machine& machine, Console& console) {
+  if (!options.console) return machine.run(limits(options));
+  runtime::RunLimits rest = limits(options);
+  const runtime::RunOutcome outcome = console.run(machine, rest);
+  const bool over = outcome.end == runtime::RunEnd::kInterrupted || outcome.end == runtime::RunEnd::kBudget || outcome.end == runtime::RunEnd::kTimeLimit;
+  if (!over) return machine.run(rest);
+  rest.until_ms = machine.time_ms();  // closes what is open
+  runtime::RunOutcome closed = machine.run(rest);
+  closed.end = outcome.end;
+  return closed;
 }
 
 int run(const RunOptions& options) {
@@ -105,8 +121,13 @@ int run(const RunOptions& options) {
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
   machine_options.max_instructions = options.max_instructions;
-  machine_options.compile_online = online_compiler(session);
-  machine_options.observers = observers(options, report, place);
+  Console console(options);
+  machine_options.compile_online = online_compiler(session, &console.error_place());
+  machine_options.source_text = [lines = source_lines(session), &console](const std::string& file, int line) {
+    const auto typed = file == Console::kName ? console.typed_line(line) : std::nullopt;
+    return typed ? typed : lines(file, line);
+  };
+  machine_options.observers = observers(options, report, place, console);
   Emitter emitter(options.emit);
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);
@@ -125,13 +146,13 @@ int run(const RunOptions& options) {
 
   catch_signals();
   const auto wall_start = std::chrono::steady_clock::now();
-  const runtime::RunOutcome outcome = machine.run(limits(options));
+  const runtime::RunOutcome outcome = run_machine(options, machine, console);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   if (shows_progress(options)) std::fprintf(stderr, "\r                              \r");
   recorder.finish();
   explain_end(options, outcome);
   const bool idle_from_start = outcome.end == runtime::RunEnd::kIdle && report.move_count() == 0 && outcome.time_ms < 11;
-  if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.quiet && exit_code(machine, outcome) == kExitOk)
+  if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.console && !options.quiet && exit_code(machine, report, outcome) == kExitOk)
     std::fprintf(stderr, "pmac-run: loaded, and nothing was started; use -e '&1 b1r' to run program 1 in coordinate system 1\n");
   const bool written = outputs.finish();
   if (options.stats) {
@@ -144,7 +165,7 @@ int run(const RunOptions& options) {
     if (written) std::perror("pmac-run: standard output");
     return kExitUsage;
   }
-  return exit_code(machine, outcome);
+  return exit_code(machine, report, outcome);
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 // assignments and programs of the coordinate systems, commands given for this time, foreground PLCs, background PLCs.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -44,7 +46,7 @@ double Machine::State::rti_at_or_after_ms(double time_ms) const {
 /// A program that is paused, held or at 0 % waits for a command; it keeps the run alive while a PLC program may give one.
 bool Machine::State::anything_runs() const {
   const auto proceeds = [this](const auto& c) { return c->proceeding(now_ms); };
-  const auto moves = [this](const Motor& m) { return m.source == Motor::Source::kProfile && !(m.clock && m.clock->stands(now_ms)); };
+  const auto moves = [this](const Motor& m) { return (m.source == Motor::Source::kProfile && !(m.clock && m.clock->stands(now_ms))) || m.kill_ms < kNever; };
   if (!timed.empty() || std::any_of(coords.begin(), coords.end(), proceeds) || std::any_of(motors.begin(), motors.end(), moves)) return true;
   const bool waits = std::any_of(coords.begin(), coords.end(), [](const auto& c) { return c->program_active(); }) ||
                      std::any_of(motors.begin(), motors.end(), [](const Motor& m) { return m.moving(); });
@@ -60,8 +62,7 @@ void Machine::State::update_idle(double time_ms) {
 double Machine::State::next_event_ms(double limit_ms) {
   double next = limit_ms;
   for (const auto& c : coords) next = std::min(next, c->next_event_ms());
-  for (const Motor& m : motors)
-    if (m.source == Motor::Source::kProfile) next = std::min(next, m.profile_end_ms());
+  for (const Motor& m : motors) next = std::min(next, next_motor_event_ms(m));
   if (!timed.empty()) next = std::min(next, timed.front().time_ms);
   bool foreground = false, background = false;
   for (const Plc& plc : plcs) {
@@ -129,6 +130,7 @@ void Machine::State::scan(int number, double) {
       report_fault({now_ms, -1, number, *result.fault});
       break;
   }
+  if (std::exchange(plc.single_scan, false)) plc.running = false;
   execute_queued_commands();
 }
 
@@ -144,13 +146,8 @@ void Machine::State::scan_plcs(double time_ms) {
 }
 
 void Machine::State::service(double time_ms) {
-  for (Motor& m : motors) {
-    m.settle(time_ms);
-    if (!m.jogging || m.moving()) continue;
-    m.jogging = false;
-    if (options.observers.move)
-      options.observers.move({"jog", m.jog_source, -1, m.number, m.jog_start_ms, m.rest_since_ms, std::abs(m.position_mu - m.jog_start_mu)});
-  }
+  for (Motor& m : motors) service_motor(*this, m);
+  programs_execute = true;
   for (const auto& c : coords) c->service(time_ms);
   execute_queued_commands();
   while (!timed.empty() && timed.front().time_ms <= time_ms) {
@@ -159,6 +156,8 @@ void Machine::State::service(double time_ms) {
     command(text, "--at");
   }
   scan_plcs(time_ms);
+  programs_execute = false;
+  reset_now();
 }
 
 RunOutcome Machine::State::run(const RunLimits& limits) {
@@ -183,6 +182,7 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
     now_ms = next;
   }
   outcome.time_ms = now_ms;
+  if (limits.more_follows) return outcome;
   for (const auto& c : coords) c->report_unfinished(now_ms, true);
   for (const auto& c : coords)
     if (c->program_active())

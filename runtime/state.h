@@ -28,6 +28,8 @@ namespace pmac::runtime {
 struct Plc {
   std::unique_ptr<Runner> runner;
   bool active = false, running = false;
+  bool single_scan = false;              // step: paused again after this one
+  OpenBlock block;                       // the move block that its scan is collecting
 };
 
 /// A line of commands waiting for its time.
@@ -38,6 +40,18 @@ struct QueuedCommand { int sender; std::string text; bytecode::SourceLine source
 
 /// What & and # address in the command lines of one sender.
 struct Addresses { int coord = 1, motor = 1; };
+
+/// An axis definition in force.
+struct SavedAxis { int coord = 0, motor = 0; bytecode::AxisDefinition definition; };
+
+/// What save keeps and $$$ brings back (reset.cpp).
+struct Configuration {
+  std::vector<std::pair<ElementAddress, double>> elements;
+  std::vector<SavedAxis> axes;
+  PointerTable pointers;
+  std::map<std::uint32_t, ProgramHandle> progs, subprogs, plc_programs;
+  std::vector<ProgramHandle> forward, inverse;       // by coordinate system
+};
 
 struct Machine::State {
   explicit State(MachineOptions options);
@@ -57,6 +71,12 @@ struct Machine::State {
   std::vector<std::string> files;                    // of all modules
   std::shared_ptr<const bytecode::Module> loading;   // module whose load script is executing
   GatherUnit gather;
+  int echo = 0;                                      // how answers look: bit 0, without names
+  std::map<int, SavedAxis> axis_definitions;         // by motor, the last one given
+  std::unique_ptr<Configuration> saved;
+  enum class Reset { kNone, kSaved, kFactory };
+  Reset pending_reset = Reset::kNone;
+  bool programs_execute = false;                     // a reset waits until they do not
 
   // time
   std::int64_t tick = -1;                            // last servo interrupt that has been sampled; -1: none yet
@@ -109,6 +129,12 @@ struct Machine::State {
   /// Stores what a synchronous assignment stores.
   void perform(const SyncEntry& entry, CoordSystem& from);
 
+  // reset.cpp
+  void save();
+  /// Resets now, or as soon as no program is in the middle of its execution.
+  void request_reset(bool factory);
+  void reset_now();
+
   // schedule.cpp
   RunOutcome run(const RunLimits& limits);
   double next_event_ms(double limit_ms);
@@ -124,12 +150,24 @@ struct Machine::State {
 Flow execute_control(Machine::State& state, Runner& runner, bytecode::ControlVerb verb, std::span<const double> arguments,
                      std::string& refusal);
 
+/// Reports of command lines (answer.cpp). report() answers a refusal or empty.
+bool is_report(bytecode::ControlVerb verb);
+std::string report(Machine::State& state, Runner& runner, bytecode::ControlVerb verb, std::span<const double> arguments);
+/// "name=value", or the value alone as echo wants it.
+void answer_value(Machine::State& state, const std::string& name, const std::string& value);
+/// vers, echo 7, list prog 5 and their kind (system_command.cpp). Answers a refusal or empty.
+std::string execute_system_command(Machine::State& state, Thread& thread, std::string_view text);
+
 /// pread and its kin (axis_queries.cpp): axis values of a coordinate system to D(axis index), their mask to D32 of the thread.
 /// Answers a refusal or empty. wanted_axes: their mask; nan: all.
 std::string read_axes(Machine::State& state, int coord, bytecode::ControlVerb verb, double wanted_axes, Thread& thread);
 
 /// Value of a status element at the present time, or of a stored one (status.cpp).
 double read_element_value(Machine::State& state, Runner& runner, const ElementAddress& address);
+
+/// Answers to #n? and &n?: two words in hex. Bits that the simulation does not compute are 0. Layout: public drivers.
+std::string motor_status_words(Machine::State& state, const Motor& motor);
+std::string coord_status_words(Machine::State& state, int coord);
 
 std::unique_ptr<Host> make_host(Machine::State& state);
 

@@ -2,6 +2,8 @@
 // User's Manual p683-694; in-position, training material.
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "compiler/bytecode/element.h"
 #include "runtime/state.h"
 
@@ -31,6 +33,9 @@ double motor_value(Machine::State& s, ElementId id, const Motor& m) {
     case ElementId::kMotorClosedLoop: return m.closed_loop;
     case ElementId::kMotorAmpEna: return m.amplifier_enabled;
     case ElementId::kMotorHomeComplete: return m.home_complete;
+    case ElementId::kMotorHomeInProgress: return m.homing();
+    case ElementId::kMotorTriggerMove: return m.seeks_trigger();
+    case ElementId::kMotorTriggerNotFound: return m.trigger_not_found;
     case ElementId::kMotorCoord: return std::max(m.coord, 0);
     default: return s.elements.get(id, static_cast<unsigned>(m.number));
   }
@@ -62,6 +67,7 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
     case ElementId::kCoordLookAheadActive:
       return c.lookahead_buffer > 0 && s.elements.get(ElementId::kCoordLHDistance, a.index[0]) > 1 &&
              s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
+    case ElementId::kCoordLookAheadStop: return c.quick_stopped();
     case ElementId::kCoordCCMode: return c.modal.compensation_side;
     case ElementId::kCoordMoveMode: return static_cast<double>(c.modal.mode);
     case ElementId::kCoordNumMotors: return static_cast<double>(c.motors().size());
@@ -75,6 +81,39 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
 bool belongs_to(ElementId id, ElementId first, ElementId last) { return id >= first && id <= last; }
 
 }  // namespace
+
+namespace {
+
+struct StatusBit { int bit; ElementId motor; };
+/// Of the first word; a coordinate system has the same for all its motors, or any of them.
+constexpr StatusBit kStatusBits[] = {
+    {31, ElementId::kMotorTriggerMove}, {30, ElementId::kMotorHomeInProgress}, {29, ElementId::kMotorMinusLimit}, {28, ElementId::kMotorPlusLimit},
+    {27, ElementId::kMotorFeWarn},      {26, ElementId::kMotorFeFatal},        {25, ElementId::kMotorLimitStop},  {24, ElementId::kMotorAmpFault},
+    {20, ElementId::kMotorTriggerNotFound}, {15, ElementId::kMotorHomeComplete}, {14, ElementId::kMotorDesVelZero}, {13, ElementId::kMotorClosedLoop},
+    {12, ElementId::kMotorAmpEna},      {11, ElementId::kMotorInPos},          {8, ElementId::kMotorPhaseFound}};
+
+std::uint32_t first_word(Machine::State& s, const Motor& m) {
+  std::uint32_t word = 0;
+  for (const StatusBit& row : kStatusBits)
+    if (motor_value(s, row.motor, m) != 0) word |= 1u << row.bit;
+  return word;
+}
+
+}  // namespace
+
+std::string motor_status_words(Machine::State& s, const Motor& m) { return fmt::format("${:08x}{:08x}", first_word(s, m), 0); }
+
+std::string coord_status_words(Machine::State& s, int coord) {
+  constexpr std::uint32_t kAnyOfThem = 0xfff00000u;   // triggers, limits, faults; the others hold for all motors
+  std::uint32_t any = 0, all = ~0u;
+  for (int motor : s.coord(coord).motors()) {
+    const std::uint32_t word = first_word(s, s.motors[static_cast<std::size_t>(motor)]);
+    any |= word;
+    all &= word;
+  }
+  if (s.coord(coord).motors().empty()) all = 0;
+  return fmt::format("${:08x}{:08x}", (any & kAnyOfThem) | (all & ~kAnyOfThem), 0);
+}
 
 double read_element_value(Machine::State& s, Runner& runner, const ElementAddress& a) {
   switch (a.id) {
@@ -94,6 +133,7 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
     case ElementId::kLdataCmdStatus: return runner.thread.command_status;
     case ElementId::kLdataStatus: return runner.kind == RunnerKind::kKinematics ? 0x40 : 0;
     case ElementId::kGatherEnable: return s.gather.enable();
+    case ElementId::kCoordLHSize: return s.coord(static_cast<int>(a.index[0])).lookahead_buffer;
     case ElementId::kGatherSamples: return static_cast<double>(s.gather.samples());
     case ElementId::kPlcActive: return s.plcs[a.index[0]].active;
     case ElementId::kPlcRunning: return s.plcs[a.index[0]].running;

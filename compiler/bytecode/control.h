@@ -21,12 +21,14 @@ enum class ControlVerb : std::uint16_t {
   kJogByActual /* motor, distance mu from actual */, kJogToAndKeep /* motor, position */, kJogReturn,
   // the same until the trigger (motor, position or distance, distance from the trigger mu)
   kJogToTrigger, kJogByTrigger, kJogByActualTrigger,
-  kHome, kHomeZero, kKill, kDelayedKill, kPhase, kOpenLoop /* motor, percent */,
+  kHome, kHomeAlso /* together with the kHome that follows */, kHomeZero, kKill, kDelayedKill, kPhase, kOpenLoop /* motor, percent */,
   // PLC programs (argument 0: number)
   kEnablePlc, kDisablePlc, kPausePlc, kResumePlc, kStepPlc,
   // reports of the on-line stream (motor or coord)
   kReportPosition, kReportVelocity, kReportDesired, kReportFollowingError, kReportStatus,
-  kReportCoordPosition, kReportCoordStatus, kReportTimeBase,
+  kReportCoordPosition, kReportCoordVelocity, kReportCoordDesired, kReportCoordFollowingError, kReportCoordTarget,
+  kReportCoordDistanceToGo, kReportCoordStatus, kReportTimeBase,
+  kReportAxisDefinition /* motor */, kReportAlias /* I number */, kReportGlobalStatus /* no argument */,
   kReportPointer /* M number */,
   kSendAllCommands /* no argument: what cmd has queued is executed before the next statement */,
   kReset, kSave,

@@ -32,6 +32,9 @@ const ElementInfo& element_info(ElementId id);
 /// The element of a name such as "motor[].jogspeed" (indices removed, any case), or kNoElement. Names of boards that are another
 /// name for a structure (PowerBrick[], Acc24E3[]) are understood.
 ElementId find_element(std::string_view pattern);
+/// The saved element that an I variable is another name for, and its first index; kNoElement for a plain variable.
+struct IVariable { ElementId id = kNoElement; std::uint32_t index = 0; };
+IVariable i_variable(int number);
 std::string_view element_type_name(ElementType type);
 std::string_view element_access_name(ElementAccess access);
 std::string_view element_simulation_name(ElementSimulation simulation);

@@ -83,6 +83,19 @@ ElementId find_element(std::string_view pattern) {
   return found == names.end() ? kNoElement : found->second;
 }
 
+IVariable i_variable(int number) {
+  const int offset = number % 100;
+  const auto motor = static_cast<std::uint32_t>(number / 100), coord = static_cast<std::uint32_t>(number / 100 - 50);
+#define MOTOR_I(wanted, Element) if (motor < kMaxMotors && offset == wanted) return {ElementId::k##Element, motor};
+#define COORD_I(wanted, Element) if (number >= 5000 && coord < kMaxCoords && offset == wanted) return {ElementId::k##Element, coord};
+#define SYSTEM_I(wanted, Element) if (number == wanted) return {ElementId::k##Element, 0};
+#include "compiler/bytecode/i_variable.def"
+#undef MOTOR_I
+#undef COORD_I
+#undef SYSTEM_I
+  return {};
+}
+
 std::string_view element_type_name(ElementType type) { return kTypeNames[static_cast<std::size_t>(type)]; }
 std::string_view element_access_name(ElementAccess access) { return kAccessNames[static_cast<std::size_t>(access)]; }
 std::string_view element_simulation_name(ElementSimulation simulation) { return kSimulationNames[static_cast<std::size_t>(simulation)]; }

@@ -66,10 +66,13 @@ constexpr std::array<VerbRow, index_of(ControlVerb::kCount)> kVerbs = {{
     {"define_lookahead", 2}, {"delete_lookahead", 1},
     {"jog+", 1}, {"jog-", 1}, {"jog/", 1}, {"jog=", 2}, {"jog:", 2}, {"jog^", 2}, {"jog==", 2}, {"jog_return", 1},
     {"jog=^", 3}, {"jog:^", 3}, {"jog^^", 3},
-    {"home", 1}, {"homez", 1}, {"kill", 1}, {"dkill", 1}, {"phase", 1}, {"out", 2},
+    {"home", 1}, {"home_also", 1}, {"homez", 1}, {"kill", 1}, {"dkill", 1}, {"phase", 1}, {"out", 2},
     {"enable_plc", 1}, {"disable_plc", 1}, {"pause_plc", 1}, {"resume_plc", 1}, {"step_plc", 1},
     {"report_position", 1}, {"report_velocity", 1}, {"report_desired", 1}, {"report_following_error", 1},
-    {"report_status", 1}, {"report_coord_position", 1}, {"report_coord_status", 1}, {"report_time_base", 1},
+    {"report_status", 1}, {"report_coord_position", 1}, {"report_coord_velocity", 1}, {"report_coord_desired", 1},
+    {"report_coord_following_error", 1}, {"report_coord_target", 1}, {"report_coord_distance_to_go", 1},
+    {"report_coord_status", 1}, {"report_time_base", 1},
+    {"report_axis_definition", 1}, {"report_alias", 1}, {"report_global_status", 0},
     {"report_pointer", 1}, {"sendallcmds", 0}, {"reset", 0}, {"save", 0},
 }};
 

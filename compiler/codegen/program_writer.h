@@ -105,6 +105,7 @@ class ProgramWriter {
   void write(const ir::DefinePointer& node, const source::Span& span);
   void write(const ir::Globals& node, const source::Span& span);
   void write(const ir::Report& node, const source::Span& span);
+  void write(const ir::SystemCommand& node, const source::Span& span);
   void write(const ir::OpenBuffer& node, const source::Span& span);
   void write(const ir::ExecuteAtOnce& node, const source::Span& span);
   void assign(const ir::Expr& target, bytecode::AssignOp op, const ir::Expr& right);

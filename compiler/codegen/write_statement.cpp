@@ -358,7 +358,13 @@ void ProgramWriter::write(const ir::DefinePointer& node, const source::Span&) {
   emit_imm(Opcode::kDefinePointer, 0, static_cast<std::int64_t>(table.size()) - 1);
 }
 
-void ProgramWriter::write(const ir::Report& node, const source::Span&) { emit_imm(Opcode::kReport, value(*node.value), tables_.string(node.name)); }
+void ProgramWriter::write(const ir::Report& node, const source::Span&) {
+  const auto* element = std::get_if<ir::Element>(&node.value->node);
+  if (element) emit_imm(Opcode::kReportElement, value(*node.value), element_ref(*element));
+  else emit_imm(Opcode::kReport, value(*node.value), tables_.string(node.name));
+}
+
+void ProgramWriter::write(const ir::SystemCommand& node, const source::Span&) { emit_imm(Opcode::kSystemCommand, 0, tables_.string(node.text)); }
 void ProgramWriter::write(const ir::ExecuteAtOnce& node, const source::Span&) { emit_imm(Opcode::kExecuteProgram, 0, static_cast<std::int64_t>(first_program_ + node.buffer)); }
 void ProgramWriter::write(const ir::OpenBuffer& node, const source::Span&) { emit_imm(Opcode::kInstallProgram, 0, static_cast<std::int64_t>(first_program_ + node.buffer)); }
 

@@ -148,6 +148,7 @@ struct DefinePointer { bytecode::PointerDefinition definition; ExprPtr element; 
 struct GlobalDeclaration { VariableClass variable_class = VariableClass::kP; std::string name; Span name_span; ExprPtr size; ExprPtr value; std::int64_t number = -1; };
 struct Globals { std::vector<GlobalDeclaration> names; };
 struct Report { ExprPtr value; std::string name; };
+struct SystemCommand { std::string text; };  // vers, echo 7, list prog 5: lower case, single blanks
 /// cx: the buffer executes at once in the addressed coordinate system.
 struct ExecuteAtOnce { std::size_t buffer = 0; };
 struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its open ... close stands here
@@ -156,7 +157,7 @@ struct Stmt {
   Span span;
   std::variant<Block, Assign, AssignSeries, Evaluate, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, CodeLine, ReadWords, LineCondition, SetFlag, Cycle, StepBlock, SetMode, SetParameter,
                SetAbsInc, SetFrax, SetNormal, Move, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
-               Globals, Report, OpenBuffer, ExecuteAtOnce>
+               Globals, Report, SystemCommand, OpenBuffer, ExecuteAtOnce>
       node;
 };
 

@@ -197,6 +197,7 @@ class StmtPrinter {
       line(fmt::format("declare {}{} '{}'{}{}", kClassLetters[static_cast<std::size_t>(name.variable_class)], name.number, name.name, name.size ? " size " + print(*name.size) : "",
                        name.value ? " = " + print(*name.value) : ""));
   }
+  void operator()(const SystemCommand& node) { line(fmt::format("system \"{}\"", node.text)); }
   void operator()(const Report& node) { line(fmt::format("report {} as \"{}\"", print(*node.value), node.name)); }
   void operator()(const OpenBuffer& node) { buffer(unit_.buffers[node.buffer]); }
   void operator()(const ExecuteAtOnce& node) { line("execute"); buffer(unit_.buffers[node.buffer]); }

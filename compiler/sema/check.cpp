@@ -281,7 +281,10 @@ void Binder::check_control_number(const ir::Control& node) {
   if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset || node.verb == ControlVerb::kReportPointer) return;
   const auto value = ir::constant_value(*node.arguments[0]);
   if (!value) return;
-  const bool motor = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;
+  if (node.verb == ControlVerb::kReportPointer || node.verb == ControlVerb::kReportAlias) return;  // a variable
+  const bool jogs = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;
+  const bool asks = node.verb >= ControlVerb::kReportPosition && node.verb <= ControlVerb::kReportStatus;
+  const bool motor = jogs || asks || node.verb == ControlVerb::kReportAxisDefinition;
   const int most = (is_plc_verb(node.verb) ? bytecode::kMaxPlcs : motor ? bytecode::kMaxMotors : bytecode::kMaxCoords) - 1;
   const bool all = std::isinf(*value) && *value > 0;
   const bool fits = all || (*value >= 0 && *value <= most && *value == std::floor(*value));

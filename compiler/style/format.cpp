@@ -344,6 +344,12 @@ void check_comments(const SourceText& source, std::vector<Problem>& problems) {
   if (open) problems.push_back({last.begin, 2, "PM1001", "comment is not closed; add */"});
 }
 
+/// Every byte stays in its encoding, which must be one that keeps ASCII.
+void check_encoding(std::string_view text, std::vector<Problem>& problems) {
+  const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  if (is_utf16) problems.push_back({0, 2, "PM2017", "this file is UTF-16; save it as UTF-8 to have it formatted"});
+}
+
 /// Words that are longer than any program's cost time with the square of their length.
 void check_long_words(std::string_view text, std::vector<Problem>& problems) {
   constexpr std::size_t kLongestWord = 1000;
@@ -358,6 +364,7 @@ void check_long_words(std::string_view text, std::vector<Problem>& problems) {
 
 Formatted format(std::string_view text, const std::string& file_name, const Names& names, const Options& options) {
   Formatted result;
+  check_encoding(text, result.problems);
   check_long_words(text, result.problems);
   if (!result.problems.empty()) return result;
   const SourceText source = read_source(text, names);

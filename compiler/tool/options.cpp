@@ -13,7 +13,8 @@ constexpr const char* kExamples = R"(Examples:
   pmacc --check MyMachine.ppproj          a project of the vendor's IDE: also its folder, or its pp_proj.ini
   pmacc --emit=files MyMachine            list the files of a project in load order
   pmacc --emit=elements                   list the data-structure elements that are known
-  pmacc --explain PM4001                  say more about a message)";
+  pmacc --explain PM4001                  say more about a message
+  pmacc fmt --help                        the formatter)";
 
 void declare_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("files", arguments.files, "source files in load order; - reads standard input");

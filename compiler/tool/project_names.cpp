@@ -5,12 +5,16 @@
 #include <fstream>
 #include <iterator>
 
+#include "compiler/source/encoding.h"
+
 namespace pmac::pmacc {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxFiles = 2000;               // of one project
+constexpr std::size_t kMaxEntries = 50000;            // looked at in the folders of one project
+constexpr std::uintmax_t kMaxBytes = 32u << 20;       // read from one project
 constexpr std::uintmax_t kLargestHeader = 4u << 20;   // bytes; longer files are part programs, which declare nothing
 constexpr int kMaxFoldersUp = 12;
 constexpr std::size_t kMaxIncludes = 200;
@@ -26,7 +30,7 @@ std::string text_of(const fs::path& file) {
   std::error_code error;
   if (fs::file_size(file, error) > kLargestHeader || error) return {};
   std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return source::decode_text({std::istreambuf_iterator<char>(stream), {}});
 }
 
 bool is_project(const fs::path& folder) {
@@ -50,7 +54,8 @@ template <class Iterator>
 std::vector<fs::path> scripts_of(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (Iterator entry(folder, fs::directory_options::skip_permission_denied, error), end; !error && entry != end && files.size() < kMaxFiles; entry.increment(error))
+  std::size_t entries = 0;
+  for (Iterator entry(folder, fs::directory_options::skip_permission_denied, error), end; !error && entry != end && files.size() < kMaxFiles && entries < kMaxEntries; entry.increment(error), ++entries)
     if (std::error_code ignored; entry->is_regular_file(ignored) && is_script(entry->path())) files.push_back(entry->path());
   std::sort(files.begin(), files.end());
   return files;
@@ -72,11 +77,14 @@ const style::Names& ProjectNames::of_folder(const fs::path& folder, bool with_su
   const auto [found, is_new] = folders_.try_emplace(folder);
   if (!is_new) return found->second;
   const auto files = with_subfolders ? scripts_of<fs::recursive_directory_iterator>(folder) : scripts_of<fs::directory_iterator>(folder);
-  for (const fs::path& file : files) add_file(file, found->second);
+  std::uintmax_t bytes = 0;
+  for (const fs::path& file : files) {
+    const std::string text = text_of(file);
+    if ((bytes += text.size()) > kMaxBytes) break;
+    style::collect_names(text, found->second);
+  }
   return found->second;
 }
-
-void ProjectNames::add_file(const fs::path& file, style::Names& names) { style::collect_names(text_of(file), names); }
 
 void ProjectNames::add_includes(const fs::path& file, const std::string& text, style::Names& names, std::set<fs::path>& seen) {
   for (std::string name : style::included_files(text)) {

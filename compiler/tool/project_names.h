@@ -18,7 +18,6 @@ class ProjectNames {
 
  private:
   const style::Names& of_folder(const std::filesystem::path& folder, bool with_subfolders);
-  void add_file(const std::filesystem::path& file, style::Names& names);
   void add_includes(const std::filesystem::path& file, const std::string& text, style::Names& names, std::set<std::filesystem::path>& seen);
 
   std::map<std::filesystem::path, style::Names> folders_;

@@ -56,7 +56,7 @@ std::string CoordSystem::execute(ProgramHandle program, double time_ms) {
 }
 
 std::string CoordSystem::start_at(const ProgramHandle& program, std::int64_t label, double time_ms) {
-  if (std::string refusal = why_not_ready(); !refusal.empty()) return refusal;
+  if (std::string refusal = why_not_ready(true); !refusal.empty()) return refusal;
   if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
   if (motor_map().motors.empty())
     machine_.warn(program.program->source, fmt::format("coordinate system {} has no motors; the program runs dry", number_));
@@ -66,15 +66,15 @@ std::string CoordSystem::start_at(const ProgramHandle& program, std::int64_t lab
   runner_.thread.q = q.data();
   machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
   block_ = {};
-  stop_requested_ = pause_requested_ = stepping_ = false;
+  stop_requested_ = pause_requested_ = stepping_ = step_block_ = false;
   sync_.clear();
   phase_ = Phase::kCalculating;
   resume_ms_ = time_ms;
   return {};
 }
 
-/// What the motors lack that a program needs.
-std::string CoordSystem::why_not_ready() const {
+/// What the motors lack that a move needs.
+std::string CoordSystem::why_not_ready(bool at_rest) const {
   for (int motor : motors_) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
     if (m.coord != number_) continue;
@@ -84,7 +84,7 @@ std::string CoordSystem::why_not_ready() const {
     if (machine_.elements.get(ElementId::kMotorPhaseFound, n) == 0)
       return fmt::format("error #44: MOTOR NOT PHASED: motor {}; give #{}$ first", motor, motor);
     if (!m.closed_loop) return fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}; give #{}j/ or enable first", motor, motor);
-    if (m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
+    if (at_rest && m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
   }
   return {};
 }
@@ -105,6 +105,11 @@ void CoordSystem::pause_here(double time_ms) {
   phase_ = Phase::kPaused;
   resume_ms_ = kNever;
   pause_requested_ = stepping_ = false;
+  note_pause(time_ms);
+}
+
+/// Where the motors have to be when the program goes on.
+void CoordSystem::note_pause(double time_ms) {
   paused_mu_.clear();
   for (int motor : motors_) {
     Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
@@ -113,7 +118,7 @@ void CoordSystem::pause_here(double time_ms) {
 }
 
 std::string CoordSystem::go_on_after_pause(double time_ms, bool one_step) {
-  if (std::string refusal = why_not_ready(); !refusal.empty()) return refusal;
+  if (std::string refusal = why_not_ready(true); !refusal.empty()) return refusal;
   for (std::size_t i = 0; i < motors_.size() && i < paused_mu_.size(); ++i) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motors_[i])];
     if (m.coord == number_ && std::abs(m.position_at(time_ms) - paused_mu_[i]) > kSamePlace_mu)
@@ -142,8 +147,14 @@ std::string CoordSystem::resume(double time_ms) {
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kNone || hold == TimeBase::Hold::kResuming)
     return fmt::format("error #39: NOT READY TO RUN: the program of coordinate system {} is neither paused nor held", number_);
+  if (quick_stopped() && on_path_ && lookahead_) {
+    quick_stopped_ = false;
+    begin_shaping(Shaping::kFaster);
+    return {};
+  }
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordFeedHoldSlew, slope_per_ms); !refusal.empty()) return refusal;
+  quick_stopped_ = false;
   time_base_.release(time_ms, slope_per_ms);
   clock_changed(time_ms);
   return {};
@@ -177,6 +188,9 @@ std::string CoordSystem::hold(double time_ms) {
   if (std::string refusal = slope_of(ElementId::kCoordFeedHoldSlew, slope_per_ms); !refusal.empty()) return refusal;
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kHeld || hold == TimeBase::Hold::kSlowing) return {};
+  shaping_ = Shaping::kNone;
+  shape_at_ms_ = kNever;
+  time_base_.shape_end(false);
   time_base_.hold(time_ms, slope_per_ms);
   clock_changed(time_ms);
   return {};
@@ -231,8 +245,14 @@ void CoordSystem::drop_program() {
   due_.clear();
   pending_moves_.clear();
   executed_.clear();
+  end_compensation();
+  spline_.cancel();
+  pvt_velocity_uu_ms_.fill(0);
   block_ = {};
-  pause_requested_ = stepping_ = false;
+  home_motors_.clear();
+  shaping_ = Shaping::kNone;
+  shape_at_ms_ = kNever;
+  pause_requested_ = stepping_ = quick_stopped_ = false;
   rotary_state_ = RotaryState::kNone;
   phase_ = Phase::kIdle;
   resume_ms_ = kNever;

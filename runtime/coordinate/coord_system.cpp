@@ -49,6 +49,9 @@ std::string CoordSystem::define(const bytecode::AxisDefinition& definition, int 
   if (m.coord >= 0 && m.coord != number_ && definition.kind != bytecode::AxisDefinitionKind::kNull)
     return fmt::format("error #21: ILLEGAL PARAMETER: motor {} belongs to coordinate system {}; define #{}->0 there first", motor,
                        m.coord, motor);
+  if (m.coord >= 0 && m.coord != number_) {  // a null definition here takes it out of its own system
+    if (const std::string refusal = machine_.coord(m.coord).define(definition, motor); !refusal.empty()) return refusal;
+  }
   std::erase_if(definitions_, [&](const auto& d) { return d.motor == motor; });
   const kinematics::MotorDefinition d = to_kinematics(definition, motor);
   definitions_.push_back(d);

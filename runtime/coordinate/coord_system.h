@@ -23,12 +23,13 @@
 #include "runtime/coordinate/time_base.h"
 #include "runtime/coordinate/transform.h"
 #include "runtime/machine.h"
+#include "runtime/motion/cutter_compensation.h"
 #include "runtime/motion/pipeline.h"
+#include "runtime/motion/profile.h"
+#include "runtime/motion/spline.h"
 #include "runtime/runner.h"
 
 namespace pmac::runtime {
-
-inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A synchronous assignment in the queue. element_address belongs to target.element where the class is kElement.
 struct SyncEntry {
@@ -36,6 +37,14 @@ struct SyncEntry {
   ElementAddress element;
   double value = 0;
   std::uint64_t move_id = 0;   // executed when this move, dwell or delay starts
+  bytecode::SourceLine source;
+};
+
+/// A rapid block: where to, and which axes stop at a trigger (their distances from it).
+struct RapidMove {
+  AxisVector target_uu{};
+  std::uint32_t trigger_axes = 0;
+  AxisVector trigger_uu{};
   bytecode::SourceLine source;
 };
 
@@ -72,6 +81,9 @@ class CoordSystem {
   /// Finishes what is calculated and waits at a programmed point.
   std::string pause(double time_ms);
   std::string hold(double time_ms);
+  /// Inside lookahead as fast as the motors' limits allow, otherwise a feed hold.
+  std::string quick_stop(double time_ms);
+  bool quick_stopped() const { return quick_stopped_ || shaping_ == Shaping::kSlower; }
   /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
   std::string set_time_base(double time_ms, double rate);
   const TimeBase& time_base() const { return time_base_; }
@@ -92,9 +104,13 @@ class CoordSystem {
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
+  /// A move block of a PLC program: rapid whatever the mode, and nobody waits for it.
+  Flow plc_move(Thread& thread, const OpenBlock& block);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
   void stop_program_from_inside() { stop_requested_ = true; }
   Flow pause_from_inside(Thread& thread) { return stop_item(thread, AfterRest::kPause); }
+  /// home in the program: comes to rest, and the motors that were named (also: one more follows) look for their triggers together.
+  Flow home_motor(Thread& thread, int motor, bool also);
   /// homez in the program: comes to rest, then the motor's position becomes 0.
   Flow home_zero(Thread& thread, int motor);
   /// Comes to rest and goes on at the next real-time interrupt.
@@ -130,10 +146,12 @@ class CoordSystem {
   /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
   AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
+  const motion::StageObservers& observers() const { return observers_; }
 
  private:
-  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
+  enum class Shaping { kNone, kSlower, kFaster };
+  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
+  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
 
   // control.cpp
   std::string start(double time_ms);
@@ -143,12 +161,20 @@ class CoordSystem {
   std::string start_rotary(double time_ms);
   bool goes_on_in_rotary();
   bool rotary_ends_here();
-  std::string why_not_ready() const;
+  std::string why_not_ready(bool at_rest) const;
   std::string go_on_after_pause(double time_ms, bool one_step);
   void pause_here(double time_ms);
+  void note_pause(double time_ms);
   void drop_program();
   void clock_changed(double time_ms);
   std::string slope_of(bytecode::ElementId slew, double& slope_per_ms) const;
+
+  // quick_stop.cpp
+  void begin_shaping(Shaping shaping);
+  bool keeps_limits(double path_ms, double step_ms);
+  double step_toward(double path_ms, double last_ms, double wanted_ms);
+  void shape_rate(double time_ms);
+  void end_shaping(double time_ms);
 
   // program.cpp
   void calculate(double time_ms);
@@ -165,12 +191,30 @@ class CoordSystem {
   Flow end_block(Thread& thread);
   std::optional<Fault> set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source);
   std::optional<Fault> place(motion::MotionCommand& command);
+  std::optional<Fault> compensate(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> flush_compensation();
+  std::optional<Fault> add_compensated();
+  std::optional<Fault> add_to_path(motion::MotionCommand command);
+  void end_compensation() { compensation_.cancel(); modal.compensation_side = 0; }
+  std::optional<Fault> hand_on(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu);
+  std::optional<Fault> add_spline_moves();
+  std::optional<Fault> finish_spline();
+  std::optional<Fault> pvt_has_ended(bytecode::SourceLine source) const;
+  std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
   void ensure_sequence(double time_ms);
   void start_dwell(double time_ms);
   void start_rapid(double time_ms);
+  std::optional<Fault> rapid_move(const ModalState& modes, const OpenBlock& block, bytecode::SourceLine source, RapidMove& move);
+  std::optional<Fault> move_rapid(double time_ms, const RapidMove& move);
+  std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
+                                        std::vector<motion::JogParameters>& parameters) const;
+  void report_rapid(double time_ms);
+  void start_homing(double time_ms);
+  void motors_arrived(double time_ms);
   void collect_timings();
   void perform_due(double time_ms);
   void perform_up_to(std::uint64_t move_id);
@@ -206,8 +250,13 @@ class CoordSystem {
   double resume_ms_ = kNever;       // when service() acts
   bool stop_requested_ = false, pause_requested_ = false;
   bool stepping_ = false;           // pauses after one item
+  bool step_block_ = false;         // between bstart and bstop
   std::vector<double> paused_mu_;   // [motors_]
   TimeBase time_base_;
+  Shaping shaping_ = Shaping::kNone;      // quick stop, or going on after it
+  bool quick_stopped_ = false;
+  double shape_at_ms_ = kNever;           // next servo tick of it
+  std::vector<double> before_mu_, here_mu_, there_mu_;   // [path motor] at the tick before, at this one, at one that is tried
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
@@ -221,12 +270,19 @@ class CoordSystem {
   AxisVector placed_uu_{};      // program coordinates of the pipeline's calculated position
   AxisVector calculated_uu_{};  // the pipeline's, in the coordinates of the axis definitions
   PositionChange position_change_{};
+  motion::CutterCompensation compensation_;
+  std::vector<motion::MotionCommand> compensated_;
+  motion::Spline spline_;
+  std::vector<motion::MotionCommand> spline_moves_;
+  AxisVector pvt_velocity_uu_ms_{};   // at the end of the last pvt move, program coordinates
   OpenBlock block_;
   double dwell_ms_ = 0;
+  std::vector<int> home_motors_;
   int home_motor_ = -1;
   bytecode::SourceLine item_source_;
-  AxisVector rapid_target_uu_{};
-  double item_start_ms_ = 0, rapid_length_uu_ = 0;
+  RapidMove rapid_;
+  double item_start_ms_ = 0, rapid_start_ms_ = 0, rapid_length_uu_ = 0;
+  bool rapid_open_ = false;         // its motors move; reported when they have come to rest
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };

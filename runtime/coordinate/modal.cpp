@@ -61,6 +61,16 @@ double rolled_over(double value, double from, double turn) {
   return from + (std::signbit(value) && forward > 0 ? forward - whole : forward);
 }
 
+bool is_pvt(MoveMode mode) { return mode == MoveMode::kPvt || mode == MoveMode::kSpline; }
+
+/// Velocities are those at the end; an axis without one stops there.
+void fill_pvt(const ModalState& modal, const OpenBlock& block, motion::MotionCommand& command) {
+  command.feed_uu = 0;
+  command.move_time_ms = modal.mode == MoveMode::kPvt ? modal.pvt_time_ms : modal.spline_time_ms[0];
+  for (std::size_t axis = 0; axis < block.velocity.size(); ++axis)
+    if (block.velocity_axes >> axis & 1u) command.end_velocity_uu_ms[axis] = block.velocity[axis] / command.feed_time_ms;
+}
+
 ElementId element_of(MotionParameter parameter) {
   switch (parameter) {
     case MotionParameter::kTa: return ElementId::kCoordTa;
@@ -73,20 +83,13 @@ ElementId element_of(MotionParameter parameter) {
   }
 }
 
-/// The word that the program has: pvt and spline set times as well as modes.
-std::string_view statement_name(MotionParameter parameter) {
-  if (parameter == MotionParameter::kPvtTime) return "pvt";
-  if (parameter >= MotionParameter::kSplineTime0 && parameter <= MotionParameter::kSplineTime2) return "spline";
-  return motion_parameter_name(parameter);
-}
-
 }  // namespace
 
 void OpenBlock::add(WordKind kind, int index, double word) {
   switch (kind) {
     case WordKind::kTarget: axes |= 1u << index; value[index] = word; break;
-    case WordKind::kVelocity: velocity_axes |= 1u << index; break;
-    case WordKind::kTriggerDistance: trigger_axes |= 1u << index; break;
+    case WordKind::kVelocity: velocity_axes |= 1u << index; velocity[index] = word; break;
+    case WordKind::kTriggerDistance: trigger_axes |= 1u << index; trigger[index] = word; break;
     case WordKind::kCenter: center_words |= 1u << index; center[index] = word; break;
     case WordKind::kRadius: has_radius = true; radius = word; break;
     case WordKind::kCount: break;
@@ -118,13 +121,16 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
       return Fault{FaultKind::kBadTarget, source, "a centre word (I, J, K) is not a finite number"};
   if (block.has_radius && !std::isfinite(block.radius))
     return Fault{FaultKind::kBadTarget, source, "the radius word R is not a finite number"};
-  if (block.trigger_axes != 0)
-    return Fault{FaultKind::kNotSimulated, source, "move-until-trigger (^) is not simulated"};
-  if (modal.mode == MoveMode::kPvt || modal.mode == MoveMode::kSpline)
-    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} moves are not simulated", move_mode_name(modal.mode))};
+  if (block.trigger_axes != 0 && modal.mode != MoveMode::kRapid)
+    return Fault{FaultKind::kMoveType, source, "a move until a trigger (X50^-5) outside rapid mode; program rapid before"};
+  for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+    if (block.trigger_axes >> axis & 1u && !std::isfinite(block.trigger[axis]))
+      return Fault{FaultKind::kBadTarget, source, fmt::format("the distance of axis {} from its trigger is not a finite number", bytecode::axis_name(axis))};
+  if (modal.mode == MoveMode::kSpline && (modal.spline_time_ms[0] != modal.spline_time_ms[1] || modal.spline_time_ms[0] != modal.spline_time_ms[2]))
+    return Fault{FaultKind::kNotSimulated, source, "a spline of three different times is not simulated; give one, and another where it changes"};
   if (!is_circle(modal.mode) && (block.center_words != 0 || block.has_radius))
     return Fault{FaultKind::kMoveType, source, "centre or radius words outside circle mode; program circle1 or circle2 before"};
-  if (block.velocity_axes != 0)
+  if (block.velocity_axes != 0 && modal.mode != MoveMode::kPvt)
     return Fault{FaultKind::kMoveType, source, "an end velocity (X10:5) outside pvt mode; program pvt before"};
   const unsigned other_set = modal.mode >= MoveMode::kCircle3 ? 0x07u : 0x38u;  // I J K, or II JJ KK
   if (is_circle(modal.mode) && (block.center_words & other_set) != 0)
@@ -135,8 +141,9 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
 motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu,
                                     const ElementStore& elements, int coord, bytecode::SourceLine source) {
   motion::MotionCommand command;
-  command.kind = is_circle(modal.mode) ? motion::CommandKind::kCircle : motion::CommandKind::kLinear;
+  command.kind = is_circle(modal.mode) ? motion::CommandKind::kCircle : is_pvt(modal.mode) ? motion::CommandKind::kPvt : motion::CommandKind::kLinear;
   command.source = source;
+  command.mode = modal.mode;
   command.axes = block.axes;
   command.target_uu = block_target(modal, block, from_uu, elements, coord);
   command.feed_axes = modal.feed_axes;
@@ -146,7 +153,16 @@ motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& bl
   command.compensation_radius_uu = modal.compensation_radius_uu;
   if (is_circle(modal.mode)) fill_circle(modal, block, from_uu, command);
   fill_times(elements, static_cast<unsigned>(coord), command);
+  if (is_pvt(modal.mode)) fill_pvt(modal, block, command);
   return command;
+}
+
+std::optional<Fault> set_segment_time(MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source) {
+  if (!std::isfinite(value) || value <= 0)
+    return Fault{FaultKind::kBadTarget, source, fmt::format("the time of a {} move is {} ms; it must be above 0", parameter == MotionParameter::kPvtTime ? "pvt" : "spline", value)};
+  if (parameter == MotionParameter::kPvtTime) modal.pvt_time_ms = value;
+  else modal.spline_time_ms[static_cast<std::size_t>(parameter) - static_cast<std::size_t>(MotionParameter::kSplineTime0)] = value;
+  return std::nullopt;
 }
 
 std::optional<Fault> set_compensation(MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source) {
@@ -168,7 +184,7 @@ std::optional<Fault> set_motion_parameter(MotionParameter parameter, double valu
   const auto cs = static_cast<unsigned>(coord);
   const ElementId id = element_of(parameter);
   if (id == ElementId::kCount)
-    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} is not simulated", statement_name(parameter))};
+    return Fault{FaultKind::kNotSimulated, source, fmt::format("{} is not simulated", motion_parameter_name(parameter))};
   if (!std::isfinite(value))
     return Fault{FaultKind::kBadTarget, source, fmt::format("{} is {}, not a finite number", motion_parameter_name(parameter), value)};
   if (parameter == MotionParameter::kFeed && value <= 0)

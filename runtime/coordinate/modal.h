@@ -28,6 +28,8 @@ struct ModalState {
   std::array<double, 3> normal{0, 0, -1}, second_normal{0, 0, -1};  // of X Y Z, of XX YY ZZ
   int compensation_side = 0;      // ccmode: 0 off, 1 left, 2 right
   double compensation_radius_uu = 0;
+  double pvt_time_ms = 0;
+  std::array<double, 3> spline_time_ms{};
 };
 
 /// The words of a move block so far.
@@ -35,6 +37,8 @@ struct OpenBlock {
   std::uint32_t axes = 0;
   AxisVector value{};             // position or distance, as programmed
   std::uint32_t trigger_axes = 0, velocity_axes = 0;
+  AxisVector trigger{};           // distance from the trigger
+  AxisVector velocity{};          // of pvt, axis units per FeedTime
   std::array<double, 6> center{};
   unsigned center_words = 0;      // mask of I J K II JJ KK
   bool has_radius = false;
@@ -53,6 +57,9 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
 /// The motion command of a linear or circle block. from_uu: calculated position. Id and no_blend are the caller's.
 motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu,
                                     const ElementStore& elements, int coord, bytecode::SourceLine source);
+
+/// pvt and spline times, ms.
+std::optional<Fault> set_segment_time(bytecode::MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source);
 
 /// ccr and ccmode.
 std::optional<Fault> set_compensation(bytecode::MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source);

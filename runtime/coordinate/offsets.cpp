@@ -21,6 +21,7 @@ std::string CoordSystem::rename_position() {
 std::optional<Fault> CoordSystem::select_transform(double number, bytecode::SourceLine source) {
   if (!(number >= -1 && number < kTransformCount) || number != std::floor(number))
     return Fault{FaultKind::kBadTarget, source, fmt::format("tsel {} selects no matrix; they are 0 to {}, and -1 for none", number, kTransformCount - 1)};
+  if (auto fault = refuse_while_compensating("tsel", source)) return fault;
   frame_.transform = static_cast<int>(number);
   if (const std::string refusal = rename_position(); !refusal.empty())
     return Fault{FaultKind::kBadTarget, source, fmt::format("the matrix Tdata[{}] is singular; start it with tinit or set Diag to 1", frame_.transform)};
@@ -33,6 +34,7 @@ std::string CoordSystem::change_positions(double time_ms, const PositionChange& 
     return {};
   }
   if (std::string refusal = match_positions(time_ms); !refusal.empty()) return refusal;
+  if (phase_ == Phase::kPaused) note_pause(time_ms);
   if (change.verb == ControlVerb::kPclr) frame_.position_bias_uu.fill(0);
   if (change.verb == ControlVerb::kPload) frame_.position_bias_uu = frame_.stored_bias_uu;
   if (change.verb == ControlVerb::kPset) {
@@ -45,6 +47,8 @@ std::string CoordSystem::change_positions(double time_ms, const PositionChange& 
 }
 
 Flow CoordSystem::change_positions(Thread& thread, const PositionChange& change) {
+  if (change.verb != ControlVerb::kPstore)
+    if (auto fault = refuse_while_compensating(control_verb_name(change.verb), thread.source())) return give_up(thread, *fault);
   position_change_ = change;
   return stop_item(thread, AfterRest::kPositions);
 }

@@ -9,6 +9,7 @@
 
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -57,8 +58,10 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
       block_.add(static_cast<bytecode::WordKind>(instruction.c()), instruction.b(), r[instruction.a]);
       return Flow::kContinue;
     case Opcode::kBlockEnd: return block_.empty() ? Flow::kContinue : end_block(thread);
-    case Opcode::kStepBegin:
-    case Opcode::kStepEnd: return Flow::kContinue;
+    case Opcode::kStepBegin: step_block_ = true; return Flow::kContinue;
+    case Opcode::kStepEnd:
+      step_block_ = false;
+      return stepping_ ? stop_item(thread, AfterRest::kPause) : Flow::kContinue;
     case Opcode::kDwell:
     case Opcode::kDelay: {
       const double ms = r[instruction.a];
@@ -82,6 +85,10 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
 std::optional<Fault> CoordSystem::set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source) {
   switch (parameter) {
     case bytecode::MotionParameter::kTsel: return select_transform(value, source);
+    case bytecode::MotionParameter::kPvtTime:
+    case bytecode::MotionParameter::kSplineTime0:
+    case bytecode::MotionParameter::kSplineTime1:
+    case bytecode::MotionParameter::kSplineTime2: return set_segment_time(parameter, value, modal, source);
     case bytecode::MotionParameter::kCcRadius:
     case bytecode::MotionParameter::kCcMode: return set_compensation(parameter, value, modal, source);
     default: return set_motion_parameter(parameter, value, machine_.elements, number_, source);
@@ -98,9 +105,8 @@ Flow CoordSystem::end_block(Thread& thread) {
   thread.reset_jump_backs();
   if (auto fault = check_block(modal, block, thread.source())) return give_up(thread, *fault);
   if (modal.mode == MoveMode::kRapid) {
-    motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
-    if (auto fault = place(command)) return give_up(thread, *fault);
-    rapid_target_uu_ = command.target_uu;
+    if (auto fault = refuse_while_compensating("a rapid move", thread.source())) return give_up(thread, *fault);
+    if (auto fault = rapid_move(modal, block, thread.source(), rapid_)) return give_up(thread, *fault);
     return stop_item(thread, AfterRest::kRapid);
   }
   motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
@@ -111,25 +117,33 @@ Flow CoordSystem::end_block(Thread& thread) {
 
 Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
   item_source_ = thread.source();
-  if (stepping_) pause_requested_ = true;
+  const bool is_step = then == AfterRest::kDwell || then == AfterRest::kRapid || then == AfterRest::kHome;
+  if (stepping_ && !step_block_ && is_step) pause_requested_ = true;
   if (auto fault = come_to_rest(machine_.now_ms, then)) return give_up(thread, std::move(*fault));
   return Flow::kSuspend;
 }
 
+Flow CoordSystem::home_motor(Thread& thread, int motor, bool also) {
+  if (auto fault = refuse_while_compensating("home", thread.source())) return give_up(thread, *fault);
+  home_motors_.push_back(motor);
+  return also ? Flow::kContinue : stop_item(thread, AfterRest::kHome);
+}
+
 Flow CoordSystem::home_zero(Thread& thread, int motor) {
+  if (auto fault = refuse_while_compensating("homez", thread.source())) return give_up(thread, *fault);
   home_motor_ = motor;
   return stop_item(thread, AfterRest::kHomeZero);
 }
 
 Flow CoordSystem::wait_for_interrupt(Thread& thread) { return stop_item(thread, AfterRest::kNextInterrupt); }
 
-/// A command of program coordinates in machine coordinates; it becomes where the program is.
+/// A command of program coordinates in machine coordinates.
 std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
   const AxisVector program_end = command.target_uu;
   if (command.kind == motion::CommandKind::kCircle && command.has_radius && frame_.scales_circles(machine_.elements, command))
     machine_.warn(command.source, fmt::format("the matrix Tdata[{}] scales the end point but not R; give the centre with I and J", frame_.transform));
   if (auto fault = frame_.place(machine_.elements, placed_uu_, calculated_uu_, command)) return fault;
-  program_uu_ = placed_uu_ = program_end;
+  placed_uu_ = program_end;
   return std::nullopt;
 }
 
@@ -141,20 +155,100 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   machine_.elements.set(ElementId::kCoordOnceNoBlend, 0, cs);
   command.transform = frame_.transform;
   if (machine_.options.observers.motion_command) machine_.options.observers.motion_command(number_, command);
-  if (auto fault = place(command)) return give_up(thread, *fault);
-  if (auto fault = pipeline_.add(command)) return give_up(thread, *fault);
-  if (++moves_without_time_ > kMaxMovesWithoutTime)
-    return give_up(thread, {FaultKind::kRunTime, command.source, fmt::format("{} moves in a row took no time; the program does not come on", kMaxMovesWithoutTime)});
-  ++next_id_;
-  calculated_uu_ = pipeline_.calculated_position();
-  const bool delay = command.kind == motion::CommandKind::kDelay;
-  pending_moves_.push_back({command.id, delay ? "delay" : move_mode_name(modal.mode), command.source});
+  const AxisVector start = std::exchange(program_uu_, command.target_uu);
+  const bool spline = command.kind == motion::CommandKind::kPvt && command.mode == MoveMode::kSpline;
+  next_id_ += spline ? 3 : command.compensation_side != 0 || compensation_.active() ? 2 : 1;  // what is added has the ids between
+  if (auto fault = spline ? add_to_spline(command, start) : hand_on(std::move(command), start)) return give_up(thread, *fault);
   collect_timings();
-  if (stepping_) return stop_item(thread, AfterRest::kPause);
+  if (stepping_ && !step_block_) return stop_item(thread, AfterRest::kPause);
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
   moves_without_time_ = 0;
   resume_ms_ = next_calculation_ms(machine_.now_ms);
   return Flow::kSuspend;
+}
+
+/// A move other than a spline: what waits goes before it.
+std::optional<Fault> CoordSystem::hand_on(motion::MotionCommand command, const AxisVector& start_uu) {
+  if (auto fault = finish_spline()) return fault;
+  if (command.kind == motion::CommandKind::kPvt) command.start_velocity_uu_ms = std::exchange(pvt_velocity_uu_ms_, command.end_velocity_uu_ms);
+  else if (auto fault = pvt_has_ended(command.source)) return fault;
+  return compensate(std::move(command), start_uu);
+}
+
+std::optional<Fault> CoordSystem::add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu) {
+  if (auto fault = pvt_has_ended(command.source)) return fault;
+  if (command.compensation_side != 0 || compensation_.active())
+    return Fault{FaultKind::kCcMoveType, command.source, "spline moves are not allowed while cutter compensation is on"};
+  spline_moves_.clear();
+  spline_.add(command, start_uu, spline_moves_);
+  return add_spline_moves();
+}
+
+std::optional<Fault> CoordSystem::finish_spline() {
+  spline_moves_.clear();
+  spline_.finish(spline_moves_);
+  return add_spline_moves();
+}
+
+std::optional<Fault> CoordSystem::add_spline_moves() {
+  for (const motion::MotionCommand& command : spline_moves_)
+    if (auto fault = add_to_path(command)) return fault;
+  return std::nullopt;
+}
+
+/// A pvt move that does not end at rest needs another one after it.
+std::optional<Fault> CoordSystem::pvt_has_ended(bytecode::SourceLine source) const {
+  for (std::size_t axis = 0; axis < pvt_velocity_uu_ms_.size(); ++axis)
+    if (pvt_velocity_uu_ms_[axis] != 0)
+      return Fault{FaultKind::kPvt, source, fmt::format("the last pvt move leaves axis {} moving; end it with velocity 0, as in {}10:0",
+                                                        bytecode::axis_name(static_cast<int>(axis)), bytecode::axis_name(static_cast<int>(axis)))};
+  return std::nullopt;
+}
+
+/// The command, or what compensation makes of it and of those before, goes on its way.
+std::optional<Fault> CoordSystem::compensate(motion::MotionCommand command, const AxisVector& start_uu) {
+  const auto cs = static_cast<unsigned>(number_);
+  const ElementStore& e = machine_.elements;
+  if (command.compensation_side != 0 && e.get(ElementId::kCoordSegMoveTime, cs) <= 0 && !compensation_.active()) {
+    machine_.warn(command.source, fmt::format("cutter compensation does nothing without segmentation; set Coord[{}].SegMoveTime", number_));
+    command.compensation_side = 0;
+  }
+  const bool compensating = command.compensation_side != 0 || compensation_.active();
+  compensated_.clear();
+  if (compensating)
+    compensation_.configure({e.get(ElementId::kCoordCCAddedArcBp, cs), static_cast<int>(e.get(ElementId::kCoordCCSize, cs)),
+                             static_cast<int>(e.get(ElementId::kCoordCCDistance, cs)), e.get(ElementId::kCoordRadiusErrorLimit, cs),
+                             e.get(ElementId::kCoordMinArcLen, cs)});
+  if (auto fault = compensation_.add(command, start_uu, compensated_)) return fault;
+  return add_compensated();
+}
+
+std::optional<Fault> CoordSystem::flush_compensation() {
+  compensated_.clear();
+  if (auto fault = compensation_.flush(compensated_)) return fault;
+  return add_compensated();
+}
+
+std::optional<Fault> CoordSystem::add_compensated() {
+  for (motion::MotionCommand& command : compensated_)
+    if (auto fault = add_to_path(std::move(command))) return fault;
+  return std::nullopt;
+}
+
+std::optional<Fault> CoordSystem::add_to_path(motion::MotionCommand command) {
+  if (auto fault = place(command)) return fault;
+  if (auto fault = pipeline_.add(command)) return fault;
+  if (++moves_without_time_ > kMaxMovesWithoutTime)
+    return Fault{FaultKind::kRunTime, command.source, fmt::format("{} moves in a row took no time; the program does not come on", kMaxMovesWithoutTime)};
+  calculated_uu_ = pipeline_.calculated_position();
+  const bool delay = command.kind == motion::CommandKind::kDelay;
+  pending_moves_.push_back({command.id, delay ? "delay" : command.added ? "added" : move_mode_name(command.mode), command.source});
+  return std::nullopt;
+}
+
+std::optional<Fault> CoordSystem::refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const {
+  if (!compensation_.active()) return std::nullopt;
+  return Fault{FaultKind::kCcMoveType, source, fmt::format("{} while cutter compensation is on; program ccmode0 and a linear move that leads out before", what)};
 }
 
 /// Opens the pipeline for a new sequence that starts now.
@@ -166,6 +260,7 @@ void CoordSystem::ensure_sequence(double time_ms) {
   const double path_ms = clock_for_motion(time_ms)->path_at(time_ms);
   pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
+  before_mu_.clear();
   sampled_to_ms_ = sequence_start_ms_ = path_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
 }
@@ -222,23 +317,37 @@ double CoordSystem::next_calculation_ms(double time_ms) const {
 double CoordSystem::next_event_ms() const {
   const double due = due_.empty() || sync_.empty() ? kNever : time_base_.time_at(due_.front().time_ms);
   const double settled = time_base_.settled_from_ms() > machine_.now_ms ? time_base_.settled_from_ms() : kNever;
-  return std::min({phase_ == Phase::kRapid ? motors_end_ms() : resume_ms_, due, settled});
+  const bool motors_decide = phase_ == Phase::kRapid || phase_ == Phase::kHoming;
+  return std::min({shape_at_ms_, motors_decide ? motors_end_ms() : resume_ms_, due, settled});
 }
 
-/// When the last of its motors comes to rest.
+/// When the last of the motors that a rapid move or home search waits for comes to rest, as things stand.
 double CoordSystem::motors_end_ms() const {
-  double end_ms = resume_ms_;
-  for (int motor : motors_) {
+  double end_ms = phase_ == Phase::kIdle || phase_ == Phase::kPaused ? 0 : resume_ms_;
+  for (int motor : phase_ == Phase::kHoming ? home_motors_ : motors_) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    if (m.coord == number_ && m.source == Motor::Source::kProfile) end_ms = std::max(end_ms, m.profile_end_ms());
+    const bool counts = phase_ == Phase::kHoming || m.coord == number_;
+    if (counts && m.source == Motor::Source::kProfile) end_ms = std::max(end_ms, m.seeks_trigger() ? kNever : m.profile_end_ms());
   }
   return end_ms;
+}
+
+/// A rapid move or home search is complete.
+void CoordSystem::motors_arrived(double time_ms) {
+  const bool axes_elsewhere = phase_ == Phase::kHoming || rapid_.trigger_axes != 0;
+  report_rapid(time_ms);
+  home_motors_.clear();
+  phase_ = Phase::kCalculating;
+  if (const std::string refusal = axes_elsewhere ? match_positions(time_ms) : std::string(); !refusal.empty())
+    return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
+  go_on(time_ms);
 }
 
 void CoordSystem::service(double time_ms) {
   perform_due(time_ms);
   record_executed(time_ms);
-  if (phase_ == Phase::kRapid && motors_end_ms() > time_ms) return;
+  if (shape_at_ms_ <= time_ms) shape_rate(time_ms);
+  if (rapid_open_ && !program_running() && motors_end_ms() <= time_ms) report_rapid(time_ms);
   for (int steps = 0; resume_ms_ <= time_ms; ++steps) {
     if (steps == kMaxStepsAtOneTime) {
       resume_ms_ = machine_.next_rti_ms(time_ms);
@@ -254,10 +363,10 @@ void CoordSystem::service(double time_ms) {
         go_on(time_ms);
         break;
       case Phase::kRapid:
+      case Phase::kHoming:
         if (motors_end_ms() > time_ms) return;
-        for (int motor : motors_) machine_.motors[static_cast<std::size_t>(motor)].settle(time_ms);
-        record({"rapid", item_source_, number_, -1, item_start_ms_, time_ms, rapid_length_uu_});
-        go_on(time_ms);
+        for (int motor : motors_) service_motor(machine_, machine_.motors[static_cast<std::size_t>(motor)]);
+        motors_arrived(time_ms);
         break;
     }
   }
@@ -306,6 +415,9 @@ void CoordSystem::calculate(double time_ms) {
 /// Ends blending; `then` happens when the motors have come to rest.
 std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
   if (on_path_) {
+    if (auto fault = pvt_has_ended(runner_.thread.source())) return fault;
+    if (auto fault = finish_spline()) return fault;
+    if (auto fault = flush_compensation()) return fault;
     if (auto fault = pipeline_.end_sequence()) return fault;
     collect_timings();
   } else if (then == AfterRest::kNextInterrupt) {
@@ -328,6 +440,7 @@ void CoordSystem::at_rest(double time_ms) {
         return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
       go_on(time_ms);
       break;
+    case AfterRest::kHome: start_homing(time_ms); break;
     case AfterRest::kPositions:
       if (const std::string refusal = change_positions(time_ms, position_change_); !refusal.empty())
         return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
@@ -371,39 +484,24 @@ void CoordSystem::start_dwell(double time_ms) {
   resume_ms_ = time_ms + dwell_ms_;
 }
 
-void CoordSystem::start_rapid(double time_ms) {
-  const motion::MotorMap map = motor_map();
-  std::vector<double> target(map.motors.size());
-  if (auto fault = motors_from_axes(rapid_target_uu_, target.data(), item_source_)) return fail(time_ms, std::move(*fault));
+void CoordSystem::start_homing(double time_ms) {
   perform_up_to(next_id_++);
-  const ElementStore& e = machine_.elements;
-  const bool equal_times = e.get(ElementId::kCoordRapidVelCtrl, static_cast<unsigned>(number_)) != 0;
-  double longest_cruise_ms = 0;
-  std::vector<motion::JogParameters> parameters;
-  for (std::size_t i = 0; i < map.motors.size(); ++i) {
-    const auto n = static_cast<unsigned>(map.motors[i]);
-    const bool at_max = e.get(ElementId::kMotorRapidSpeedSel, n) != 0;
-    parameters.push_back({e.get(at_max ? ElementId::kMotorMaxSpeed : ElementId::kMotorJogSpeed, n), e.get(ElementId::kMotorJogTa, n),
-                          e.get(ElementId::kMotorJogTs, n)});
-    if (!(parameters[i].speed_mu_ms > 0))
-      return fail(time_ms, {FaultKind::kBadTarget, item_source_,
-                            fmt::format("Motor[{}].{} is not above 0; a rapid move needs a speed", n, at_max ? "MaxSpeed" : "JogSpeed")});
-    longest_cruise_ms = std::max(longest_cruise_ms, std::abs(target[i] - machine_.motors[n].position_at(time_ms)) / parameters[i].speed_mu_ms);
+  phase_ = Phase::kHoming;
+  resume_ms_ = time_ms;
+  for (int motor : home_motors_) {
+    Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    const bool elsewhere = m.coord >= 0 && m.coord != number_ && machine_.coord(m.coord).program_running();
+    std::string refusal;
+    if (!m.closed_loop) refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", motor);
+    else if (elsewhere) refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}", motor, m.coord);
+    else refusal = home(machine_, m, item_source_);
+    if (!refusal.empty()) return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
   }
-  const TimeBase* clock = clock_for_motion(time_ms);
-  for (std::size_t i = 0; i < map.motors.size(); ++i) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(map.motors[i])];
-    const double from = m.position_at(time_ms);
-    if (from == target[i]) continue;
-    if (equal_times) parameters[i].speed_mu_ms = std::abs(target[i] - from) / longest_cruise_ms;  // the same D/V for all
-    m.follow(motion::MotorProfile::move(clock->path_at(time_ms), from, 0, target[i], parameters[i]), clock);
-  }
-  double length2 = 0;
-  for (std::size_t axis = 0; axis < rapid_target_uu_.size(); ++axis)
-    length2 += (rapid_target_uu_[axis] - calculated_uu_[axis]) * (rapid_target_uu_[axis] - calculated_uu_[axis]);
-  calculated_uu_ = rapid_target_uu_;
-  item_start_ms_ = time_ms;
-  rapid_length_uu_ = std::sqrt(length2);
+}
+
+void CoordSystem::start_rapid(double time_ms) {
+  perform_up_to(next_id_++);
+  if (auto fault = move_rapid(time_ms, rapid_)) return fail(time_ms, std::move(*fault));
   phase_ = Phase::kRapid;
   resume_ms_ = time_ms;
 }
@@ -479,7 +577,8 @@ void CoordSystem::report_unfinished(double time_ms, bool go_on) {
     const auto& [timing, mode, source] = executed_.front();
     report(mode, source, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu);
   }
-  if (phase_ == Phase::kRapid) report("rapid", item_source_, item_start_ms_, motors_end_ms(), rapid_length_uu_);
+  if (rapid_open_) report("rapid", rapid_.source, rapid_start_ms_, motors_end_ms(), rapid_length_uu_);
+  rapid_open_ = false;
 }
 
 void CoordSystem::perform_due(double time_ms) {

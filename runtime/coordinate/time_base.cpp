@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace pmac::runtime {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostPieces = 100'000;  // older ones are forgotten; only times of a move that lasts through more would suffer
 
 }  // namespace
@@ -94,7 +92,7 @@ void TimeBase::release(double time_ms, double slope_per_ms) {
 }
 
 void TimeBase::clear_hold(double time_ms) {
-  hold_ = Hold::kNone;
+  shape_end(false);
   if (rate_at(time_ms) == override_ && steady_until_ms(time_ms) == kNever) return;
   force_rate(time_ms, override_);
 }
@@ -105,6 +103,7 @@ void TimeBase::force_rate(double time_ms, double rate) {
 }
 
 TimeBase::Hold TimeBase::hold_state(double time_ms) const {
+  if (shaped_) return hold_;
   const bool settled = steady_until_ms(time_ms) == kNever;
   if (hold_ == Hold::kSlowing && settled && rate_at(time_ms) == 0) return Hold::kHeld;
   if (hold_ == Hold::kResuming && settled) return Hold::kNone;

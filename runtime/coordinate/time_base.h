@@ -10,9 +10,12 @@
 // defaults. The controller changes its time base by steps, once a servo cycle; here it is the straight line through them.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace pmac::runtime {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class TimeBase {
  public:
@@ -40,7 +43,9 @@ class TimeBase {
   void clear_hold(double time_ms);
   /// Exactly this rate from time_ms on; a caller that shapes the rate itself (quick stop).
   void force_rate(double time_ms, double rate);
-  void set_hold(Hold hold) { hold_ = hold; }
+  /// The caller shapes the rate until shape_end(); FeedHold shows hold meanwhile.
+  void shape(Hold hold) { hold_ = hold; shaped_ = true; }
+  void shape_end(bool held) { hold_ = held ? Hold::kSlowing : Hold::kNone; shaped_ = false; }
 
   double override_rate() const { return override_; }
   Hold hold_state(double time_ms) const;
@@ -58,6 +63,7 @@ class TimeBase {
 
   bool real_time_ = true;
   double override_ = 1;
+  bool shaped_ = false;
   Hold hold_ = Hold::kNone;        // kSlowing and kResuming until the slope has ended
   std::vector<Piece> pieces_{{0, 0, 1, 0}};   // ascending; those of the past serve times that are asked for later
 };

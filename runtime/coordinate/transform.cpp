@@ -177,6 +177,7 @@ void place(const Transform& transform, const AxisVector& base_start, MotionComma
     if (differs) command.axes |= 1u << axis;
     command.target_uu[axis] = command.axes >> axis & 1u ? base_end[axis] : base_start[axis];
   }
+  command.start_velocity_uu_ms = transform.velocity(command.start_velocity_uu_ms);
   command.end_velocity_uu_ms = transform.velocity(command.end_velocity_uu_ms);
 }
 

@@ -328,6 +328,8 @@ dispatch_next:
   ONLINE(DefineAxis);
   ONLINE(DefinePointer);
   ONLINE(InstallProgram);
+  ONLINE(ReportElement);
+  ONLINE(SystemCommand);
   ONLINE(ExecuteProgram);
   ONLINE(Report);
 

@@ -100,7 +100,7 @@ Result<Arc> make_arc(const MotionCommand& command, const AxisVector& start, cons
   const double start_radius = center.norm(), end_radius = (plane.chord - center).norm();
   if (!(start_radius > 0)) return circle_fault(command, "the centre is the start point; I, J and K give the vector to the centre");
   const double error = std::abs(end_radius - start_radius);
-  if (config.radius_error_limit_uu > 0 && error > config.radius_error_limit_uu)
+  if (command.sweep_rad == 0 && config.radius_error_limit_uu > 0 && error > config.radius_error_limit_uu)
     return circle_fault(command, fmt::format("radius is {} at the start and {} at the end point", start_radius, end_radius));
   return arc_about(center, plane, start, end, first_axis, config.min_arc_len, command.sweep_rad);
 }

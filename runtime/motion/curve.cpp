@@ -25,7 +25,31 @@ void add_arc(const Curve& curve, double u, CurvePoint& point) {
   }
 }
 
+/// From the nearer end, so that both are exact.
+void evaluate_cubic(const Curve& curve, double u, CurvePoint& point) {
+  for_each_axis(curve.moved, [&](std::size_t axis) {
+    const double r1 = curve.rates->end[axis];
+    const auto [c1, c2, c3] = cubic_coefficients(curve.delta[axis], curve.rates->start[axis], r1);
+    const double w = u - 1;
+    point.position[axis] = u < 0.5 ? curve.start[axis] + u * (c1 + u * (c2 + u * c3)) : curve.end[axis] + w * (r1 + w * (c2 + 3 * c3 + w * c3));
+    point.d1[axis] = c1 + u * (2 * c2 + u * 3 * c3);
+    point.d2[axis] = 2 * c2 + 6 * c3 * u;
+  });
+}
+
 }  // namespace
+
+std::array<double, 3> cubic_coefficients(double delta, double start_rate, double end_rate) {
+  return {start_rate, 3 * delta - 2 * start_rate - end_rate, start_rate + end_rate - 2 * delta};
+}
+
+Curve pvt_curve(const AxisVector& start, const AxisVector& end, const EndRates& rates) {
+  Curve curve = line(start, end);
+  for (std::size_t axis = 0; axis < start.size(); ++axis)
+    if (rates.start[axis] != 0 || rates.end[axis] != 0) curve.moved |= 1u << axis;
+  curve.rates = std::make_shared<const EndRates>(rates);
+  return curve;
+}
 
 Curve line(const AxisVector& start, const AxisVector& end) {
   Curve curve;
@@ -41,6 +65,7 @@ Curve line(const AxisVector& start, const AxisVector& end) {
 void evaluate(const Curve& curve, double exact_u, CurvePoint& point) {
   const double u = std::abs(exact_u - 1) < kRounding ? 1 : std::abs(exact_u) < kRounding ? 0 : exact_u;
   point.position = u < 0.5 ? curve.start : curve.end;
+  if (curve.rates) return evaluate_cubic(curve, u, point);
   const AxisVector& base = point.position;
   const double offset = u < 0.5 ? u : u - 1;  // exact at both ends
   for_each_axis(curve.moved, [&](std::size_t axis) {
@@ -55,7 +80,7 @@ void evaluate(const Curve& curve, double exact_u, CurvePoint& point) {
 }
 
 AxisVector derivative(const Curve& curve, double u) {
-  if (!curve.is_arc) return curve.delta;
+  if (!curve.is_arc && !curve.rates) return curve.delta;
   CurvePoint point;
   point.d1.fill(0);
   evaluate(curve, u, point);

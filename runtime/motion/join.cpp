@@ -78,6 +78,8 @@ std::vector<double> motor_change(const Move& previous, const Move& next) {
 }  // namespace
 
 Join decide_join(const Move& previous, const Move& next, double entry_total_ms, const PipelineConfig& config) {
+  if (previous.pvt && next.pvt) return {JoinKind::kSteady, {}, 0, 0, 0};  // given velocities, the same on both sides
+  if (previous.pvt || next.pvt) return {};
   const Corner corner = corner_between(previous, next);
   const std::uint32_t axes = previous.curve->moved | next.curve->moved;
   if (corner_is_too_sharp(corner, next, config.corner_dwell_bp)) {

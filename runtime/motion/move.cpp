@@ -31,6 +31,7 @@ std::optional<Fault> check(const MotionCommand& command) {
   if (!(command.feed_time_ms > 0)) return refuse("Coord[].FeedTime must be positive");
   if (!is_valid({command.ta_ms, command.ts_ms}) || !is_valid({command.td_ms, command.tsd_ms}))
     return refuse("ts must be a rate (negative) or 0 where ta is a rate");
+  if (!is_finite(command.end_velocity_uu_ms, ~0u)) return refuse("the velocity is not a finite number");
   for (const double value : command.center_uu)
     if (!std::isfinite(value)) return refuse("the centre vector is not a finite number");
   if (!std::isfinite(command.radius_uu)) return refuse("the radius is not a finite number");
@@ -129,6 +130,15 @@ std::optional<Fault> map_ends(Curve& curve, const std::vector<double>& start_mot
   return std::nullopt;
 }
 
+std::optional<Fault> too_long(const Move& move, SourceLine source, const PipelineConfig& config) {
+  if (!std::isfinite(move.time_ms)) return Fault{FaultKind::kBadTarget, source, "the move would take for ever"};
+  if (config.segment_time_ms > 0 && move.time_ms / config.segment_time_ms > kMaxSegmentsOfMove)
+    return Fault{FaultKind::kBadTarget, source,
+                 fmt::format("the move takes {:.0f} s, more than {} segments of {} ms; divide it or raise SegMoveTime", move.time_ms / 1000,
+                             kMaxSegmentsOfMove, config.segment_time_ms)};
+  return std::nullopt;
+}
+
 Result<Arc> make_geometry(const MotionCommand& command, const AxisVector& start, const PipelineConfig& config) {
   const AxisVector end = command.kind == CommandKind::kDelay ? start : end_point(command, start);
   const bool as_line = command.kind != CommandKind::kCircle || config.segment_time_ms <= 0;
@@ -144,6 +154,42 @@ void take_words(Move& move, const MotionCommand& command) {
   move.no_blend = command.no_blend;
   move.normal = command.normal;
   move.second_set = command.second_set;
+}
+
+/// Unsegmented: the motors' own cubics, which the linear map makes of those of the axes.
+std::optional<Fault> map_rates(Curve& curve, SourceLine source, const MoveContext& context) {
+  if (context.config.segment_time_ms > 0) return std::nullopt;
+  if (!context.kinematics.is_linear())
+    return Fault{FaultKind::kNotSimulated, source, "pvt and spline moves through inverse kinematics need segmentation; set Coord[].SegMoveTime"};
+  curve.motor_start_rate_mu.resize(context.kinematics.count());
+  curve.motor_end_rate_mu.resize(context.kinematics.count());
+  context.kinematics.rate(curve.rates->start, curve.motor_start_rate_mu.data());
+  context.kinematics.rate(curve.rates->end, curve.motor_end_rate_mu.data());
+  return std::nullopt;
+}
+
+Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
+                           const MoveContext& context) {
+  const double time_ms = command.move_time_ms;
+  if (!(time_ms > 0)) return Fault{FaultKind::kPvt, command.source, "the time of a pvt or spline move must be above 0"};
+  EndRates rates;
+  for (std::size_t axis = 0; axis < rates.start.size(); ++axis) {
+    rates.start[axis] = command.start_velocity_uu_ms[axis] * time_ms;
+    rates.end[axis] = command.end_velocity_uu_ms[axis] * time_ms;
+  }
+  Curve curve = pvt_curve(start, end_point(command, start), rates);
+  if (auto fault = map_ends(curve, start_motor_mu, command.source, context)) return *fault;
+  if (auto fault = map_rates(curve, command.source, context)) return *fault;
+  Move move;
+  take_words(move, command);
+  move.entry = move.exit = {0, 0};
+  move.no_blend = false;
+  move.pvt = true;
+  move.time_ms = time_ms;
+  move.length_uu = norm(curve.delta, command.feed_axes & curve.moved);
+  move.curve = std::make_shared<const Curve>(std::move(curve));
+  if (auto fault = too_long(move, command.source, context.config)) return *fault;
+  return move;
 }
 
 }  // namespace
@@ -170,6 +216,7 @@ AxisVector end_velocity(const Move& move, double u) {
 Result<Move> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
                        const MoveContext& context) {
   if (auto fault = check(command)) return *fault;
+  if (command.kind == CommandKind::kPvt) return make_pvt_move(command, start, start_motor_mu, context);
   Result<Arc> geometry = make_geometry(command, start, context.config);
   if (Fault* fault = std::get_if<Fault>(&geometry)) return *fault;
   Arc& arc = std::get<Arc>(geometry);
@@ -182,11 +229,7 @@ Result<Move> make_move(const MotionCommand& command, const AxisVector& start, co
   if (move.length_uu == 0) move.length_uu = longest(arc.curve, ~0u);
   move.time_ms = std::max(programmed_ms, time_for_max_speed_ms(move, context.config));
   move.time_ms = time_with_room_for_ramps(move, move.time_ms, context.config);
-  if (!std::isfinite(move.time_ms)) return Fault{FaultKind::kBadTarget, command.source, "the move would take for ever"};
-  if (context.config.segment_time_ms > 0 && move.time_ms / context.config.segment_time_ms > kMaxSegmentsOfMove)
-    return Fault{FaultKind::kBadTarget, command.source,
-                 fmt::format("the move takes {:.0f} s, more than {} segments of {} ms; divide it or raise SegMoveTime", move.time_ms / 1000,
-                             kMaxSegmentsOfMove, context.config.segment_time_ms)};
+  if (auto fault = too_long(move, command.source, context.config)) return *fault;
   if (move.time_ms == 0 && move.curve->moved != 0)
     return Fault{FaultKind::kBadTarget, command.source, "the move takes no time; set tm, ta or a feed rate"};
   move.stop_ramp = own_ramp(move, move.time_ms, true, context.config);

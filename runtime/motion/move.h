@@ -20,6 +20,7 @@ struct Move {
   RampSetting entry{}, exit{};          // ta ts, td tsd as set
   Ramp stop_ramp;                       // to rest at the end of this move
   bool no_blend = false;
+  bool pvt = false;                     // velocities at both ends are given; no ramps
   std::array<double, 3> normal{};       // for the corner rule
   bool second_set = false;
 };

@@ -14,8 +14,26 @@ namespace {
 
 using runtime::Fault;
 
+/// Unsegmented pvt: the cubic in u of each motor, u = u0 + rate * time.
+Segment pvt_segment(const PathPiece& piece) {
+  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
+  const Curve& curve = *piece.part[0].curve;
+  const double u = piece.part[0].u[0], rate = piece.part[0].u[1];
+  for (std::size_t m = 0; m < curve.motor_start_mu.size(); ++m) {
+    const auto [c1, c2, c3] = cubic_coefficients(curve.motor_delta_mu[m], curve.motor_start_rate_mu[m], curve.motor_end_rate_mu[m]);
+    MotorCubic q;
+    q.c0 = curve.motor_start_mu[m] + u * (c1 + u * (c2 + u * c3));
+    q.c1 = rate * (c1 + u * (2 * c2 + u * 3 * c3));
+    q.c2 = rate * rate * (c2 + 3 * c3 * u);
+    q.c3 = rate * rate * rate * c3;
+    segment.motor.push_back(q);
+  }
+  return segment;
+}
+
 /// Unsegmented: lines only, so that a motor is a cubic of time: start + delta * u(t), two of them superposed at a corner.
 Segment motor_segment(const PathPiece& piece) {
+  if (piece.part[0].curve->rates) return pvt_segment(piece);
   Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
   segment.motor.resize(piece.part[0].curve->motor_start_mu.size());
   for (int i = 0; i < piece.part_count; ++i) {
@@ -217,6 +235,8 @@ double Pipeline::end_ms() const { return state_->timeline.end_ms(); }
 void Pipeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
   state_->timeline.sample(start_ms, period_ms, count, position_mu, velocity_mu_ms);
 }
+
+void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
 
 SourceLine Pipeline::executing_source(double time_ms) const { return state_->timeline.source_at(time_ms); }
 

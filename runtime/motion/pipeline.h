@@ -75,6 +75,9 @@ class Pipeline {
   /// position_mu: [motor][count], motor order of the map. velocity_mu_ms: same shape, or empty. Does not allocate.
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
 
+  /// The same at one time from the last sample up to horizon_ms(), out of the way of sample().
+  void peek(double time_ms, std::span<double> position_mu) const;
+
   /// Source line of the command that executes at time_ms (as last sampled); SourceLine{} at rest.
   SourceLine executing_source(double time_ms) const;
 

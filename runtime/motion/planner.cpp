@@ -104,7 +104,7 @@ void Planner::begin(Move move, const PipelineConfig& config, PlannerOutput& out)
   out.begins.push_back({move.id, move.source, start_ms, start_ms, move.length_uu});
   const RampParts parts = ramp_parts(ramp);
   rest_before_ = true;
-  step_before_ = parts.count == 0;
+  step_before_ = parts.count == 0 && !move.pvt;
   for (int i = 0; i < parts.count; ++i) {
     const RampPart& part = parts.part[static_cast<std::size_t>(i)];
     emit(move, start_ms + part.start_ms, part.duration_ms, {entry_part(move, part)}, out);

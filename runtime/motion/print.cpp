@@ -65,6 +65,7 @@ std::uint32_t moved_axes(const PathPiece& piece) {
 const char* shape_of(const PathPiece& piece) {
   if (piece.part_count > 1) return "corner";
   if (piece.part[0].curve->is_arc) return "arc";
+  if (piece.part[0].curve->rates) return "pvt";
   return piece.part[0].curve->moved == 0 ? "rest" : "line";
 }
 

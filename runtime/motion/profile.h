@@ -30,6 +30,8 @@ class MotorProfile {
   double position_mu(double time_ms) const;
   double velocity_mu_ms(double time_ms) const;
   double accel_mu_ms2(double time_ms) const;
+  /// First time at or after from_ms at which the position is position_mu, exactly; infinity if never.
+  double first_time_at(double position_mu, double from_ms) const;
   double end_ms() const;      // infinity for a jog without end
   double target_mu() const;   // position at the end; the present one for a jog without end
 

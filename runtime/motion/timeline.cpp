@@ -81,6 +81,16 @@ void Timeline::sample(double start_ms, double period_ms, int count, std::span<do
   if (count > 0) sampled_ms_ = start_ms + (count - 1) * period_ms;
 }
 
+void Timeline::peek(double time_ms, std::span<double> position_mu) const {
+  const auto at = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return end_of(s) <= time_ms; });
+  if (at == segments_.end()) {
+    std::copy(rest_mu_.begin(), rest_mu_.end(), position_mu.begin());
+    return;
+  }
+  const double d = std::clamp(at->programmed_ms(time_ms - at->start_ms), 0.0, at->segment.duration_ms);
+  for (std::size_t m = 0; m < position_mu.size(); ++m) position_mu[m] = at->segment.motor[m].position(d);
+}
+
 /// Samples first..last-1, none after the end of the segment; before its start it stands at its first point.
 void Timeline::sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
                               std::span<double> position_mu, std::span<double> velocity_mu_ms) const {

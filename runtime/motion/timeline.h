@@ -33,6 +33,9 @@ class Timeline {
   /// See Pipeline::sample().
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
 
+  /// Positions at one time that has not been pruned.
+  void peek(double time_ms, std::span<double> position_mu) const;
+
  private:
   void sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
                       std::span<double> position_mu, std::span<double> velocity_mu_ms) const;

@@ -46,12 +46,13 @@ struct MotionCommand {
   bool inverse_time = false;            // InvTimeMode: feed_uu is moves per feed time
   double ta_ms = 0, td_ms = 0, ts_ms = 0, tsd_ms = 0;  // negative: rates, see reference in ramp.h
   bool no_blend = false;                // stop at the end of this move
-  AxisVector end_velocity_uu_ms{};      // pvt only: velocity at the end; the time is move_time_ms
+  AxisVector start_velocity_uu_ms{}, end_velocity_uu_ms{};  // pvt only; the time is move_time_ms
   // modes that stages before the planner act on
   int transform = -1;                   // selected matrix Tdata[transform]; -1: none
   int compensation_side = 0;            // ccmode: 0 off, 1 left, 2 right
   double compensation_radius_uu = 0;    // ccr
   bool added = false;                   // put in by cutter compensation
+  bytecode::MoveMode mode = bytecode::MoveMode::kLinear;  // in force at the block, for reports
 };
 
 /// Limits of one motor that programmed moves respect. 0: off, for the inverse ones.

@@ -1,5 +1,6 @@
 #include "runtime/tool/load.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -23,10 +24,16 @@ std::span<const std::uint8_t> as_bytes(const std::string& text) {
 bool use_color() { return isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
 
 /// The first error of a text, as the answer to a command.
-std::string first_error(const std::vector<source::Diagnostic>& diagnostics) {
-  for (const source::Diagnostic& d : diagnostics)
-    if (d.severity == source::Severity::kError) return d.message;
-  return {};
+std::string first_error(const compiler::Session& session, const std::vector<source::Diagnostic>& diagnostics, ErrorPlace* place) {
+  const auto is_error = [](const source::Diagnostic& d) { return d.severity == source::Severity::kError; };
+  const auto error = std::find_if(diagnostics.begin(), diagnostics.end(), is_error);
+  if (error == diagnostics.end()) return {};
+  if (place && error->span.valid()) {
+    const source::LineColumn at = session.sources().line_column(error->span.file, error->span.begin);
+    place->line = at.line + place->before;
+    place->column = at.column;
+  }
+  return error->message;
 }
 
 /// Prints what the session has to say and forgets it. True if there were errors.
@@ -114,10 +121,21 @@ int load_files(const RunOptions& options, compiler::Session& session, runtime::M
   return compile_pending(pending, session, machine);
 }
 
-runtime::OnlineCompiler online_compiler(compiler::Session& session) {
-  return [&session](std::string_view text, std::string_view name) -> std::variant<bytecode::Module, std::string> {
+std::function<std::optional<std::string>(const std::string& file, int line)> source_lines(const compiler::Session& session) {
+  return [&sources = session.sources()](const std::string& file, int line) -> std::optional<std::string> {
+    for (std::size_t i = sources.file_count(); i-- > 0;) {
+      const source::File& candidate = sources.file(static_cast<std::int32_t>(i));
+      if (candidate.name != file || line < 1 || static_cast<std::size_t>(line) > candidate.line_starts.size()) continue;
+      return std::string(sources.line_text(static_cast<std::int32_t>(i), line));
+    }
+    return std::nullopt;
+  };
+}
+
+runtime::OnlineCompiler online_compiler(compiler::Session& session, ErrorPlace* place) {
+  return [&session, place](std::string_view text, std::string_view name) -> std::variant<bytecode::Module, std::string> {
     auto module = session.compile_online(text, name);
-    const std::string reason = first_error(session.diagnostics().take());
+    const std::string reason = first_error(session, session.diagnostics().take(), place);
     if (!reason.empty()) return reason;
     if (!module) return std::string("error #20: ILLEGAL CMD");
     if (const std::string invalid = bytecode::verify(*module); !invalid.empty()) return "internal error: " + invalid;

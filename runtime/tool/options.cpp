@@ -33,7 +33,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.set_version_flag("--version", "pmac-run 0.1.0");
   std::string until = "idle", fine = "through", ramp = "power", json, max_time = "3600";
   std::vector<std::string> defines, at;
-  app.add_option("FILE", o.files, "programs, set-up files or compiled modules (.pmx), loaded in order")->required();
+  app.add_option("FILE", o.files, "programs, set-up files or compiled modules (.pmx), loaded in order");
   app.add_option("-e,--execute", o.commands, "on-line commands, executed at time 0")->type_name("COMMANDS")->allow_extra_args(false);
   app.add_option("--at", at, "on-line commands at a simulated time in seconds")->type_name("TIME COMMANDS")->type_size(2)->expected(0, 10'000'000)->allow_extra_args(false);
   app.add_option("--until", until, "run to this simulated time in seconds, or until idle")->type_name("idle|TIME")->capture_default_str();
@@ -47,6 +47,9 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
   app.add_option("--fine", fine, "fine interpolation between segments")->check(CLI::IsMember({"through", "bspline"}))->capture_default_str();
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
+  app.add_flag("--console", o.console, "read on-line commands from standard input and answer each line");
+  app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();
+  app.add_flag("--realtime", o.realtime, "with --console: simulated time follows the clock on the wall");
   app.add_option("-I", o.include_dirs, "folder for #include")->type_name("DIR")->allow_extra_args(false);
   app.add_option("-D", defines, "define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
   app.add_flag("-q,--quiet", o.quiet, "no progress, no answers of commands");
@@ -59,6 +62,8 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
     std::fprintf(stderr, "pmac-run: %s\nRun with --help for more information.\n", message.c_str());
     return kExitUsage;
   };
+  if (o.files.empty() && !o.console) return usage("FILE is required");
+  if (o.realtime && !o.console) return usage("--realtime goes with --console");
   if (at.size() % 2 != 0) return usage("--at needs a time and a command");
   for (std::size_t i = 0; i + 1 < at.size(); i += 2) {
     if (const std::string bad = check_seconds(at[i]); !bad.empty()) return usage("--at: " + bad);

@@ -25,6 +25,8 @@ struct RunOptions {
   std::vector<std::string> plots;
   std::string emit;
   bool stats = false, quiet = false;
+  bool console = false, realtime = false;
+  double console_step_ms = 10;                                // simulated time that passes after a line of the console
   JsonDetail json = JsonDetail::kNone;
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;

@@ -29,6 +29,8 @@ class Report {
                    double wall_s) const;
   /// The log of output changes, a line each.
   std::string output_log(const runtime::Machine& machine) const;
+  /// Commands that were refused, other than those of the console, which are answered there.
+  bool any_refused() const { return !refusals_.empty(); }
   std::size_t move_count() const { return move_count_; }
 
  private:

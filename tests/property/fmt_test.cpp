@@ -34,12 +34,15 @@ std::vector<fs::path> programs_below(const fs::path& folder) {
   return found;
 }
 
-/// The answer to a query repeats the query, letter case and all; that is no part of what a program does.
-std::string with_small_reports(const std::string& disassembly) {
+/// The answer to a query repeats the query, letter case, blanks and all; that is no part of what a program does.
+std::string with_plain_reports(const std::string& disassembly) {
   std::string result;
   std::istringstream lines(disassembly);
   for (std::string line; std::getline(lines, line);) {
-    if (line.find(" report ") != std::string::npos) std::transform(line.begin(), line.end(), line.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (line.find(" report ") != std::string::npos) {
+      std::transform(line.begin(), line.end(), line.begin(), [](unsigned char c) { return std::tolower(c); });
+      line.erase(std::remove(line.begin(), line.end(), ' '), line.end());
+    }
     result += line + "\n";
   }
   return result;
@@ -51,7 +54,7 @@ std::string bytecode_of(const std::string& text, const fs::path& name) {
   const auto module = session.compile({{name.string(), text}});
   if (!module) return "errors";
   const std::regex place(" *; [^;\n]*:[0-9]+(?=\n)");
-  return with_small_reports(std::regex_replace(disassemble(*module), place, ""));
+  return with_plain_reports(std::regex_replace(disassemble(*module), place, ""));
 }
 
 std::multiset<std::string> comments_of(const std::string& text) {

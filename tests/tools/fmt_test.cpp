@@ -124,6 +124,16 @@ TEST_CASE("fmt: bytes beyond ASCII stay, whatever their encoding", "[fmt]") {
   CHECK(work.read("bom.pmc") == "\xef\xbb\xbfopen prog 1\ncmd \"\xc3\xa4\"  // \xc3\xb6\nclose\n");
 }
 
+TEST_CASE("fmt: UTF-16 is refused with its remedy", "[fmt]") {
+  const Workspace work;
+  const std::string text("\xff\xfeo\0p\0e\0n\0", 10);
+  work.write("a.pmc", text);
+  const ToolResult ran = work.run("pmacc", "fmt a.pmc");
+  CHECK(ran.code == 1);
+  CHECK(ran.err.find("save it as UTF-8") != std::string::npos);
+  CHECK(work.read("a.pmc") == text);
+}
+
 TEST_CASE("fmt: empty files and files of blanks", "[fmt]") {
   const Workspace work;
   work.write("empty.pmc", "");

@@ -36,8 +36,8 @@ void Workspace::write(const std::string& name, const std::string& bytes) const {
 std::string Workspace::read(const std::string& name) const { return slurp(path(name)); }
 
 ToolResult Workspace::run(const std::string& tool, const std::string& arguments) const {
-  const std::string command = "cd '" + folder_.string() + "' && timeout 60 '" + PMAC_BINARY_DIR + "/bin/" + tool + "' " + arguments +
-                              " >.out 2>.err </dev/null";
+  const std::string command = "cd '" + folder_.string() + "' && timeout 60 '" + PMAC_BINARY_DIR + "/bin/" + tool + "' </dev/null " + arguments +
+                              " >.out 2>.err";  // input of the arguments' own comes later and wins
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path(".out")), slurp(path(".err"))};
 }

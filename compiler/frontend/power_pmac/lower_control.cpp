@@ -138,10 +138,11 @@ void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body
   else if (!control->numberList() && online_) numbers = acts_on_motors(verb) ? addressed_motors(span) : addressed_coords(span);
   else numbers = lower_number_list(control->numberList());
   for (ir::ExprPtr& number : numbers) {
+    const bool more_homes = verb == ControlVerb::kHome && &number != &numbers.back();
     std::vector<ir::ExprPtr> arguments;
     arguments.push_back(std::move(number));
     if (control->data()) arguments.push_back(lower_data(control->data()));
-    add_control(verb, span, std::move(arguments), out);
+    add_control(more_homes ? ControlVerb::kHomeAlso : verb, span, std::move(arguments), out);
   }
 }
 

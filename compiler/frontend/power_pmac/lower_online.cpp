@@ -141,25 +141,30 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
   if (online->start->getLine() != address_line_) {
     motor_list_.clear();
     coord_list_.clear();
-    coord_addressed_last_ = false;
+    coord_addressed_last_ = addressed_on_line_ = false;
   }
   address_line_ = online->start->getLine();
   const source::Span span = span_of(online);
   if (online->declaration()) return lower_declaration(online->declaration(), out);
+  if (online->HASH() && online->ARROW() && !online->axisDefinition()) return lower_axis_query(online, out);
   if (online->HASH() && online->ARROW()) return lower_axis_definition(online, out);
   if (online->HASH() || online->AMPERSAND() || online->COORD()) return lower_address(online, out);
+  if (online->ARROW() && online->LETTER_I()) return lower_alias_query(online, out);
   if (online->ARROW()) return lower_pointer_command(online, out);
   if (online->assignment()) return lower_assignment(online->assignment(), out);
   if (online->onlineListAssignment()) return lower_series(online->onlineListAssignment(), out);
+  if (online->RANGE()) return lower_variable_range(online, out);
   if (online->lvalue()) {
     ir::ExprPtr value = lower_lvalue(online->lvalue());
     const std::string name(tree_.expanded.text().substr(online->start->getStartIndex(), online->stop->getStopIndex() + 1 - online->start->getStartIndex()));
     return out.push_back(ir::make_stmt(span, ir::Report{std::move(value), name}));
   }
   if (online->CLOSE()) return;
+  if (online->OTHER_COMMAND() || online->ECHO() || online->ROTARY()) return lower_system_command(online, out);
   if (online->programControl()) return lower_program_control(online->programControl(), out);
   if (online->onlineJog()) return lower_online_jog(online->onlineJog(), span, out);
   if (online->COMMAND()) return lower_command(lower_case(text_of(online->start)), span, out);
+  if (online->RESET()) return out.push_back(ir::make_stmt(span, ir::SystemCommand{text_of(online->single)}));
   if (online->single) return lower_command(text_of(online->single), span, out);
   if (online->ON_OUT()) {
     for (ir::ExprPtr& motor : addressed_motors(span)) {
@@ -170,8 +175,6 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
     }
     return;
   }
-  const bool per_coord = online->DEFINE() || online->DELETE() || online->ON_B() || (!online->OTHER_COMMAND() && !online->ECHO());
-  if (!per_coord) return not_supported(span, fmt::format("the on-line command {}", lower_case(text_of(online->start))));
   for (ir::ExprPtr& coord : addressed_coords(span)) {
     std::vector<ir::ExprPtr> arguments;
     arguments.push_back(std::move(coord));
@@ -188,10 +191,11 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
 void Lowering::lower_address(P::OnlineContext* online, ir::Body& out) {
   const bool coord = online->HASH() == nullptr;
   coord_addressed_last_ = coord;
+  addressed_on_line_ = true;
   const source::Span span = span_of(online);
   auto& list = coord ? coord_list_ : motor_list_;
   list.clear();
-  if (!online->numberList()) return not_supported(span, "asking for the addressed motor or coordinate system");
+  if (!online->numberList()) return out.push_back(ir::make_stmt(span, ir::SystemCommand{coord ? "&" : "#"}));
   const auto items = online->numberList()->numberItem();
   const bool all = items.size() == 1 && items[0]->STAR();
   if (all) return list.push_back(kAll);
@@ -235,7 +239,6 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
     definition.motor = static_cast<std::int32_t>(number.value_or(0));
   }
   P::AxisDefinitionContext* right = online->axisDefinition();
-  if (!right) return not_supported(span, "asking for an axis definition");
   if (right->LETTER_I()) {
     definition.kind = bytecode::AxisDefinitionKind::kInverseKinematics;
   } else if (right->CODE()) {
@@ -298,33 +301,17 @@ void Lowering::lower_series(P::OnlineListAssignmentContext* assignment, ir::Body
 }
 
 void Lowering::lower_command(std::string_view word, source::Span span, ir::Body& out) {
-  struct Row { std::string_view word; ControlVerb verb; enum { kMotor, kCoord, kNone } of; };
+  struct Row { std::string_view word; ControlVerb verb; enum { kMotor, kCoord } of; };
   constexpr Row kRows[] = {{"r", ControlVerb::kRun, Row::kCoord}, {"s", ControlVerb::kStep, Row::kCoord}, {"q", ControlVerb::kPause, Row::kCoord},
                            {"h", ControlVerb::kHold, Row::kCoord}, {"a", ControlVerb::kAbort, Row::kCoord}, {"<", ControlVerb::kRetrace, Row::kCoord},
                            {">", ControlVerb::kForward, Row::kCoord}, {"\\", ControlVerb::kQuickStop, Row::kCoord}, {"k", ControlVerb::kKill, Row::kMotor},
-                           {"hm", ControlVerb::kHome, Row::kMotor}, {"hmz", ControlVerb::kHomeZero, Row::kMotor}, {"$", ControlVerb::kPhase, Row::kMotor},
-                           {"v", ControlVerb::kReportVelocity, Row::kMotor}, {"d", ControlVerb::kReportDesired, Row::kMotor},
-                           {"f", ControlVerb::kReportFollowingError, Row::kMotor}, {"save", ControlVerb::kSave, Row::kNone},
-                           {"$$$", ControlVerb::kReset, Row::kNone}, {"$$$***", ControlVerb::kReset, Row::kNone}};
-  if (word == "p" || word == "?") {
-    const ControlVerb of_motor = word == "p" ? ControlVerb::kReportPosition : ControlVerb::kReportStatus;
-    const ControlVerb of_coord = word == "p" ? ControlVerb::kReportCoordPosition : ControlVerb::kReportCoordStatus;
-    for (ir::ExprPtr& number : coord_addressed_last_ ? addressed_coords(span) : addressed_motors(span)) {
-      std::vector<ir::ExprPtr> arguments;
-      arguments.push_back(std::move(number));
-      add_control(coord_addressed_last_ ? of_coord : of_motor, span, std::move(arguments), out);
-    }
-    return;
-  }
+                           {"hm", ControlVerb::kHome, Row::kMotor}, {"hmz", ControlVerb::kHomeZero, Row::kMotor}, {"$", ControlVerb::kPhase, Row::kMotor}};
+  if (lower_report(word, span, out)) return;
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.word == word; });
-  const bool known = row != std::end(kRows) && !(row->of == Row::kMotor && coord_addressed_last_ && (word == "v" || word == "d" || word == "f"));
-  if (!known) return not_supported(span, fmt::format("the on-line command {}", word));
-  std::vector<ir::ExprPtr> numbers;
-  if (row->of == Row::kNone) numbers.push_back(nullptr);
-  else numbers = row->of == Row::kMotor ? addressed_motors(span) : addressed_coords(span);
-  for (ir::ExprPtr& number : numbers) {
+  if (row == std::end(kRows)) return out.push_back(ir::make_stmt(span, ir::SystemCommand{std::string(word)}));
+  for (ir::ExprPtr& number : row->of == Row::kMotor ? addressed_motors(span) : addressed_coords(span)) {
     std::vector<ir::ExprPtr> arguments;
-    if (row->of != Row::kNone) arguments.push_back(std::move(number));
+    arguments.push_back(std::move(number));
     add_control(row->verb, span, std::move(arguments), out);
   }
 }

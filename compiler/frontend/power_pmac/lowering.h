@@ -104,6 +104,12 @@ class Lowering {
   void lower_pointer_command(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_query(P::OnlineContext* online, ir::Body& out);
   void lower_command(std::string_view word, source::Span span, ir::Body& out);
+  // what the load stream asks (lower_query.cpp)
+  void lower_alias_query(P::OnlineContext* online, ir::Body& out);
+  void lower_axis_query(P::OnlineContext* online, ir::Body& out);
+  void lower_variable_range(P::OnlineContext* online, ir::Body& out);
+  void lower_system_command(P::OnlineContext* online, ir::Body& out);
+  bool lower_report(std::string_view word, source::Span span, ir::Body& out);
   void lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out);
   void lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out);
   std::vector<ir::ExprPtr> addressed_motors(source::Span span);
@@ -121,6 +127,7 @@ class Lowering {
   bool online_ = false;                        // lowering an on-line command
   bool in_rotary_ = false;                     // lowering a rotary buffer: no jumps, blocks of one line
   bool coord_addressed_last_ = false;          // & came after #
+  bool addressed_on_line_ = false;             // # or & stood on this line
   std::size_t address_line_ = 0;
   std::vector<std::int64_t> motor_list_, coord_list_;  // of #1..3 and &1,2: for the next command of the line
 };

@@ -43,9 +43,10 @@ Table make_online_keywords() {
   Table table;
   add_keywords(table, T::OPEN, T::STEP);
   table.erase("local");
-  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save"}) table[word] = T::COMMAND;
-  for (const char* word : {"fsave", "reboot", "vers", "type", "cpu", "cid", "size", "buffer", "list", "undefine", "date", "time", "system", "free", "dir"})
-    table[word] = T::OTHER_COMMAND;
+  for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save", "fsave", "reboot", "vers", "type", "cpu", "cid", "size",
+                           "buffer", "date", "time", "free", "dir"})
+    table[word] = T::COMMAND;
+  for (const char* word : {"list", "undefine", "system", "backup"}) table[word] = T::OTHER_COMMAND;
   table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"clear", T::CLEAR}, {"cx", T::CX}, {"define", T::DEFINE},
                 {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}});
   return table;
@@ -124,6 +125,8 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
   const Word whole_name{T::NAME, word.size()};
   const bool is_rest = begin < split_end_;
   if (last_[0] == T::DOT) return {T::MEMBER, word.size()};  // behind a dot
+  const bool closes_all = (last_[0] == T::CLOSE && lower(word) == "all") || (last_[0] == T::ALL && lower(word) == "buffers");
+  if (closes_all && line == last_line_) return {T::ALL, word.size()};  // close all buffers
   if (axis_definition_) {
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
     if (kind) return {kind, run_length(word)};

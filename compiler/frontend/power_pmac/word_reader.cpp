@@ -21,7 +21,7 @@ std::string as_ascii(std::string text) {
 
 bool is_letter_type(std::size_t type) {
   switch (type) {
-    case T::AXIS: case T::VECTOR: case T::RADIUS: case T::NORMAL_VECTOR: case T::PSET_AXIS: case T::CODE: case T::VAR: case T::LETTER_C:
+    case T::AXIS: case T::VECTOR: case T::RADIUS: case T::NORMAL_VECTOR: case T::PSET_AXIS: case T::CODE: case T::VAR: case T::LETTER: case T::LETTER_C:
     case T::LETTER_D: case T::LETTER_F: case T::LETTER_I: case T::LETTER_M: case T::LETTER_N: case T::LETTER_R: return true;
     default: return false;
   }

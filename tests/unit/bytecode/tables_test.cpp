@@ -65,6 +65,24 @@ TEST_CASE("elements: as many index ranges as brackets in the name", "[bytecode]"
   CHECK(element_info(ElementId::kSysServoPeriod).default_value == 0.44274211);
 }
 
+TEST_CASE("I variables that are another name for an element", "[bytecode]") {
+  CHECK(i_variable(123).id == ElementId::kMotorHomeVel);         // User's Manual p560
+  CHECK(i_variable(123).index == 1);
+  CHECK(i_variable(5198).id == ElementId::kCoordMaxFeedRate);
+  CHECK(i_variable(5198).index == 1);
+  CHECK(i_variable(8010).id == ElementId::kSysServoPeriod);
+  CHECK(i_variable(3222).index == 32);
+  CHECK(i_variable(3322).id == kNoElement);                      // there is no motor 33
+  CHECK(i_variable(8200).id == kNoElement);
+  for (int number = 0; number < kICount; ++number) {
+    const IVariable alias = i_variable(number);
+    if (alias.id == kNoElement) continue;
+    INFO(number << " " << element_info(alias.id).name);
+    CHECK(element_info(alias.id).access == ElementAccess::kSaved);
+    CHECK((element_info(alias.id).index_counts[0] == 0 || alias.index < static_cast<std::uint32_t>(element_info(alias.id).index_counts[0])));
+  }
+}
+
 TEST_CASE("names of the small enumerations", "[bytecode]") {
   CHECK(move_mode_name(MoveMode::kCircle2) == "circle2");
   CHECK(motion_parameter_name(MotionParameter::kTsd) == "tsd");

@@ -178,6 +178,31 @@ TEST_CASE("a step is one move, and a step of a program that executes pauses it",
   REQUIRE(bench.answers.size() == 1);
 }
 
+TEST_CASE("a block from bstart to bstop is one step", "[programs]") {
+  ProgramBench bench("a.pmc", kSetUp + "open prog 5\nlinear abs ta0 ts0 F10\nbstart\nX1\nX2\ndwell 100\nX3\nbstop\nX4\nclose\n");
+  bench.machine->at(600, "&1 s");
+  bench.machine->at(900, "&1 r");
+  bench.run("&1 b5s");
+  REQUIRE(bench.refusals.empty());
+  CHECK(position_mu(bench, 200) == 2000);
+  CHECK(position_mu(bench, 400) == 3000);
+  CHECK(position_mu(bench, 599) == 3000);
+  CHECK(position_mu(bench, 700) == 4000);
+}
+
+TEST_CASE("pmatch after a pause takes the place to which the motors were jogged", "[programs]") {
+  ProgramBench bench("a.pmc", kSetUp);
+  bench.machine->at(50, "&1 q");
+  bench.machine->at(400, "#1j:-500");
+  bench.machine->at(1000, "&1 pmatch");
+  bench.machine->at(1100, "&1 r");
+  bench.run("&1 b2r");
+  REQUIRE(bench.refusals.empty());
+  CHECK(position_mu(bench, 1100) == 2500);
+  CHECK(position_mu(bench, 1200) == 3500);   // 1.5 mm at 10 mm/s
+  CHECK(position_mu(bench, 1250) == 4000);
+}
+
 TEST_CASE("pause in a program stops behind the line", "[programs]") {
   ProgramBench bench("a.pmc", kSetUp + "open prog 4\nlinear abs ta0 ts0 F10\nX1\npause\nX2\nclose\n");
   bench.machine->at(500, "&1 resume");

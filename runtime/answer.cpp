@@ -1,0 +1,169 @@
+// Answers to questions of command lines: positions, velocities, status words, definitions. Positions are answered in motor units from
+// home and in axis units; the ideal servo has no following error. Source: on-line commands, Software Reference Manual p62-76.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "compiler/bytecode/control.h"
+#include "compiler/bytecode/element.h"
+#include "runtime/state.h"
+#include "runtime/value_text.h"
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ControlVerb;
+using bytecode::ElementId;
+using Kind = kinematics::MotorDefinition::Kind;
+
+struct StatusBit { int bit; ElementId id; };
+constexpr StatusBit kMotorBits[] = {
+#define MOTOR_STATUS_BIT(bit, name) {bit, ElementId::kMotor##name},
+#define COORD_STATUS_BIT(bit, name)
+#include "runtime/status_bit.def"
+#undef MOTOR_STATUS_BIT
+#undef COORD_STATUS_BIT
+};
+constexpr StatusBit kCoordBits[] = {
+#define MOTOR_STATUS_BIT(bit, name)
+#define COORD_STATUS_BIT(bit, name) {bit, ElementId::kCoord##name},
+#include "runtime/status_bit.def"
+#undef MOTOR_STATUS_BIT
+#undef COORD_STATUS_BIT
+};
+
+/// The 64-bit status word; the lower half, which the simulation does not compute, is 0.
+std::string status_word(Machine::State& s, Runner& runner, std::span<const StatusBit> bits, int number) {
+  std::uint32_t word = 0;
+  for (const StatusBit& b : bits)
+    if (read_element_value(s, runner, {b.id, {static_cast<std::uint32_t>(number), 0, 0}}) != 0) word |= 1u << b.bit;
+  return fmt::format("${:08x}{:08x}", word, 0);
+}
+
+// --- axis definitions -----------------------------------------------------------------------------------------------------
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// 1000x, 8660.25x-5000y+20000, i, s, 0.
+std::string definition_text(const kinematics::MotorDefinition& d) {
+  if (d.kind == Kind::kInverse) return "i";
+  if (d.kind == Kind::kSpindle) return "s";
+  std::string text;
+  for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
+    const double c = d.coefficient_mu_uu[static_cast<std::size_t>(axis)];
+    if (c == 0) continue;
+    const std::string number = c == 1 ? "" : c == -1 ? "-" : fmt::format("{}", c);
+    text += (text.empty() || number.starts_with('-') ? "" : "+") + number + lower(bytecode::axis_name(axis));
+  }
+  if (text.empty()) return "0";
+  return d.offset_mu == 0 ? text : text + fmt::format("{:+}", d.offset_mu);
+}
+
+/// With the coordinate system where it is another one than the addressed one.
+std::string axis_definition(Machine::State& s, const Runner& runner, const Motor& m) {
+  if (m.coord < 0) return fmt::format("#{}->0", m.number);
+  const auto& definitions = s.coord(m.coord).map().definitions();
+  const auto found = std::find_if(definitions.begin(), definitions.end(), [&](const auto& d) { return d.motor == m.number; });
+  const std::string text = found == definitions.end() ? "0" : definition_text(*found);
+  const std::string where = m.coord == runner.thread.coord || text == "0" ? "" : fmt::format("&{}", m.coord);
+  return fmt::format("{}#{}->{}", where, m.number, text);
+}
+
+// --- coordinate systems -------------------------------------------------------------------------------------------------------
+
+/// Axis values of the axes that have motors: "X10 Y-5".
+std::string axes_text(const CoordSystem& c, const AxisVector& values) {
+  std::string text;
+  for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+    if (c.axes_with_motors() >> axis & 1u)
+      text += fmt::format("{}{}{}", text.empty() ? "" : " ", bytecode::axis_name(axis), double_text(values[static_cast<std::size_t>(axis)]));
+  return text;
+}
+
+/// Axis velocities per Coord[].FeedTime, from the commanded positions around now.
+AxisVector axis_velocity(Machine::State& s, CoordSystem& c, unsigned number) {
+  const double step_ms = s.period_ms();
+  std::vector<double> before(bytecode::kMaxMotors), after(bytecode::kMaxMotors);
+  for (const Motor& m : s.motors) {
+    const auto n = static_cast<std::size_t>(m.number);
+    before[n] = m.position_at(s.now_ms);
+    after[n] = before[n] + m.velocity_at(s.now_ms) * step_ms;
+  }
+  AxisVector from{}, to{}, velocity{};
+  if (!c.axes_from_motors(before, from) || !c.axes_from_motors(after, to)) return velocity;
+  const double feed_time_ms = s.elements.get(ElementId::kCoordFeedTime, number);
+  for (std::size_t axis = 0; axis < velocity.size(); ++axis) velocity[axis] = (to[axis] - from[axis]) / step_ms * feed_time_ms;
+  return velocity;
+}
+
+std::string coord_answer(Machine::State& s, Runner& runner, ControlVerb verb, int number) {
+  CoordSystem& c = s.coord(number);
+  switch (verb) {
+    case ControlVerb::kReportCoordPosition:
+    case ControlVerb::kReportCoordDesired: return axes_text(c, c.commanded_position(s.now_ms));
+    case ControlVerb::kReportCoordVelocity: return axes_text(c, axis_velocity(s, c, static_cast<unsigned>(number)));
+    case ControlVerb::kReportCoordFollowingError: return axes_text(c, AxisVector{});
+    case ControlVerb::kReportCoordTarget: return axes_text(c, c.calculated_position());
+    case ControlVerb::kReportCoordDistanceToGo: {
+      AxisVector distance = c.calculated_position();
+      const AxisVector now = c.commanded_position(s.now_ms);
+      for (std::size_t axis = 0; axis < distance.size(); ++axis) distance[axis] -= now[axis];
+      return axes_text(c, distance);
+    }
+    default: return status_word(s, runner, kCoordBits, number);
+  }
+}
+
+std::string motor_answer(Machine::State& s, Runner& runner, ControlVerb verb, const Motor& m) {
+  switch (verb) {
+    case ControlVerb::kReportPosition:
+    case ControlVerb::kReportDesired: return double_text(m.position_at(s.now_ms));
+    case ControlVerb::kReportVelocity: return double_text(m.velocity_at(s.now_ms) * s.period_ms());
+    case ControlVerb::kReportFollowingError: return "0";
+    case ControlVerb::kReportAxisDefinition: return axis_definition(s, runner, m);
+    default: return status_word(s, runner, kMotorBits, m.number);
+  }
+}
+
+/// The number that a report is about, or -1 where there is none such.
+int number_of(std::span<const double> arguments, int addressed, int count) {
+  const double given = arguments.empty() || std::isnan(arguments[0]) ? addressed : arguments[0];
+  return given >= 0 && given < count ? static_cast<int>(given) : -1;
+}
+
+std::string alias(int number) {
+  const bytecode::IVariable alias = bytecode::i_variable(number);
+  return fmt::format("I{}->{}", number, alias.id == bytecode::kNoElement ? "*" : element_text({alias.id, {alias.index, 0, 0}}));
+}
+
+}  // namespace
+
+bool is_report(ControlVerb verb) {
+  return verb >= ControlVerb::kReportPosition && verb <= ControlVerb::kReportGlobalStatus && verb != ControlVerb::kReportTimeBase;
+}
+
+std::string report(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments) {
+  if (verb == ControlVerb::kReportGlobalStatus) return s.answer("$00000000"), "";
+  const bool of_variable = verb == ControlVerb::kReportAlias;
+  const bool of_coord = verb >= ControlVerb::kReportCoordPosition && verb <= ControlVerb::kReportCoordStatus;
+  const int addressed = of_coord ? runner.thread.coord : runner.thread.motor;
+  const int count = of_variable ? bytecode::kICount : of_coord ? bytecode::kMaxCoords : bytecode::kMaxMotors;
+  const int number = number_of(arguments, addressed, count);
+  if (number < 0) return "error #23: OUT OF RANGE NUMBER";
+  if (of_variable) s.answer(alias(number));
+  else if (of_coord) s.answer(coord_answer(s, runner, verb, number));
+  else s.answer(motor_answer(s, runner, verb, s.motors[static_cast<std::size_t>(number)]));
+  return "";
+}
+
+void answer_value(Machine::State& s, const std::string& name, const std::string& value) {
+  const bool bare = (s.echo & 1) != 0;
+  s.answer(bare ? value : name + "=" + value);
+}
+
+}  // namespace pmac::runtime

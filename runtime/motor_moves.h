@@ -1,0 +1,34 @@
+// What a single motor is told to do by itself: jogs, home searches, moves until a trigger. Source: jog commands, Software Reference
+// Manual p74; triggered moves, User's Manual p718-719. The trigger is a place: Sim.Motor[].TriggerPos, which stands for the capture
+// input that the controller would have; it is caught exactly where the commanded position passes it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runtime/state.h"
+
+namespace pmac::runtime {
+
+/// Each answers a refusal ("error #21: ...") or empty. A motor that moves goes on from its position and speed.
+/// trigger_distance_mu: until the trigger, and then to so far from it.
+std::string jog_to(Machine::State& s, Motor& m, double target_mu, bytecode::SourceLine source, std::optional<double> trigger_distance_mu = {});
+std::string jog_endless(Machine::State& s, Motor& m, int direction, bytecode::SourceLine source);
+void jog_stop(Machine::State& s, Motor& m);
+/// At HomeVel until the trigger, back to it and on to HomeOffset, which becomes position 0.
+std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source);
+
+/// The brake engages; the motor is killed Motor[].BrakeOnDelay later.
+void delay_kill(Machine::State& s, Motor& m, double brake_ms);
+
+/// The motor follows a profile until its trigger, and then goes to trigger_distance_mu from it.
+void seek_trigger(Machine::State& s, Motor& m, double trigger_distance_mu, const motion::JogParameters& parameters);
+/// Its trigger lies elsewhere now.
+void trigger_moved(Machine::State& s, Motor& m);
+
+/// When service_motor() has something to do.
+double next_motor_event_ms(const Motor& m);
+/// A trigger that was passed, a profile that has ended.
+void service_motor(Machine::State& s, Motor& m);
+
+}  // namespace pmac::runtime

@@ -1,0 +1,178 @@
+#include "runtime/tool/console.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <regex>
+
+namespace pmac::tool {
+namespace {
+
+constexpr char kAck = 0x06, kEndOfInput = 0x04;
+constexpr std::size_t kLongestLine = 1 << 20;
+constexpr int kPaceMs = 10;
+
+double wall_ms() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Lines of standard input; in between, it says when there is none yet.
+class LineReader {
+ public:
+  enum class Got { kLine, kNothing, kEnd };
+
+  /// Waits at most timeout_ms for a line (-1: for as long as it takes).
+  Got next(std::string& line, int timeout_ms) {
+    while (!take(line)) {
+      if (ended_) return Got::kEnd;
+      pollfd input{STDIN_FILENO, POLLIN, 0};
+      const int ready = ::poll(&input, 1, timeout_ms);
+      if (ready == 0) return Got::kNothing;
+      if (ready < 0) return Got::kNothing;  // a signal
+      char bytes[65536];
+      const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
+      if (count <= 0) ended_ = true;
+      else text_.append(bytes, static_cast<std::size_t>(count));
+    }
+    return Got::kLine;
+  }
+
+ private:
+  /// The next line of what was read; the last one needs no line end, Ctrl-D ends the input.
+  bool take(std::string& line) {
+    const std::size_t end = text_.find_first_of("\n\x04");
+    if (end == std::string::npos && (!ended_ || text_.empty())) return false;
+    line = text_.substr(0, end);
+    if (end != std::string::npos && text_[end] == kEndOfInput) {
+      ended_ = true;
+      text_.clear();
+      if (line.empty()) return false;
+    } else {
+      text_.erase(0, end == std::string::npos ? end : end + 1);
+    }
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    return true;
+  }
+
+  std::string text_;
+  bool ended_ = false;
+};
+
+/// What a line does to buffers: the words open and close outside of comments and texts.
+struct BufferWords { bool opens = false, closes = false; };
+
+BufferWords buffer_words(std::string line) {
+  static const std::regex kNoise(R"re("(\\.|[^"\\])*"|/\*.*?\*/|//.*$)re");
+  static const std::regex kWord(R"re((^|[^A-Za-z0-9_.])(open|close)(?![A-Za-z0-9_.\[(=]))re", std::regex::icase);
+  line = std::regex_replace(line, kNoise, " ");
+  BufferWords words;
+  for (auto word = std::sregex_iterator(line.begin(), line.end(), kWord); word != std::sregex_iterator(); ++word) {
+    const bool opens = std::tolower(static_cast<unsigned char>((*word)[2].str()[0])) == 'o';
+    words.opens = opens || words.opens;
+    words.closes = !opens;  // the last word decides
+  }
+  return words;
+}
+
+bool is_error(const std::string& reason) { return reason.starts_with("error #"); }
+
+}  // namespace
+
+void Console::answer(const std::string& text) { std::printf("%s\n", text.c_str()); }
+
+void Console::refuse(const std::string& reason) {
+  const std::string text = is_error(reason) ? reason : "error #21: ILLEGAL PARAMETER: " + reason;
+  const int line = error_place_.line > 0 ? error_place_.line : line_;
+  std::printf("%s:%d:%d: %s\n", kName, line, std::max(error_place_.column, 1), text.c_str());
+}
+
+std::optional<std::string> Console::typed_line(int line) const {
+  const auto found = typed_.find(line);
+  return found == typed_.end() ? std::nullopt : std::optional<std::string>(found->second);
+}
+
+/// first_line: of the text; a text of several lines keeps its numbers by empty lines before it.
+void Console::execute(runtime::Machine& machine, const std::string& text, int first_line) {
+  error_place_ = {};
+  error_place_.before = text.find('\n') == std::string::npos ? first_line - 1 : 0;
+  const std::string lines = error_place_.before > 0 ? text : std::string(static_cast<std::size_t>(first_line - 1), '\n') + text;
+  executing_ = true;
+  machine.command(lines, kName);
+  executing_ = false;
+}
+
+/// wait 500 and wait idle are the console's own: simulated milliseconds, or until nothing moves.
+bool Console::wait(const std::string& line) {
+  static const std::regex kWait(R"(\s*wait\s+(idle|[0-9]*\.?[0-9]+)\s*;?\s*)", std::regex::icase);
+  std::smatch match;
+  if (!std::regex_match(line, match, kWait)) return false;
+  wait_idle_ = std::isalpha(static_cast<unsigned char>(match[1].str()[0])) != 0;
+  wait_ms_ = wait_idle_ ? 0 : std::atof(match[1].str().c_str());
+  return true;
+}
+
+void Console::take_line(runtime::Machine& machine, const std::string& line) {
+  ++line_;
+  wait_ms_ = options_.console_step_ms;
+  wait_idle_ = false;
+  const bool in_buffer = buffer_line_ > 0;
+  const BufferWords words = buffer_words(line);
+  if (line.size() > kLongestLine) {
+    error_place_ = {};
+    refuse("error #21: ILLEGAL PARAMETER: the line is too long");
+  } else if (in_buffer || (words.opens && !words.closes)) {
+    if (!in_buffer) buffer_line_ = line_;
+    typed_[line_] = line;
+    buffer_ += line + "\n";
+    if (!words.closes) return;
+    execute(machine, buffer_, buffer_line_);
+    buffer_.clear();
+    buffer_line_ = 0;
+  } else if (!wait(line)) {
+    execute(machine, line, line_);
+  }
+}
+
+/// Lets simulated time pass after a line. False when the run is over.
+bool Console::advance(runtime::Machine& machine) {
+  limits_.until_ms = machine.time_ms() + wait_ms_;
+  if (options_.realtime) limits_.until_ms = std::max(machine.time_ms(), wall_ms() - wall_start_ms_);
+  if (wait_idle_) limits_.until_ms.reset();
+  limits_.more_follows = true;
+  outcome_ = machine.run(limits_);
+  return outcome_.end == runtime::RunEnd::kUntil || outcome_.end == runtime::RunEnd::kIdle;
+}
+
+runtime::RunOutcome Console::run(runtime::Machine& machine, const runtime::RunLimits& limits) {
+  limits_ = limits;
+  wall_start_ms_ = wall_ms() - machine.time_ms();
+  std::printf("pmac-run 0.1.0 STDIN Open for ASCII Input\n");
+  std::fflush(stdout);
+  LineReader reader;
+  std::string line;
+  for (bool going = true; going;) {
+    const LineReader::Got got = reader.next(line, options_.realtime ? kPaceMs : -1);
+    if (got == LineReader::Got::kEnd) break;
+    if (limits_.interrupted && limits_.interrupted()) {
+      outcome_.end = runtime::RunEnd::kInterrupted;
+      break;
+    }
+    if (options_.realtime) going = advance(machine);
+    if (got == LineReader::Got::kNothing) continue;
+    take_line(machine, line);
+    std::printf("%c\n", kAck);
+    if (std::fflush(stdout) != 0) break;  // nobody listens any more
+    const bool waits = !options_.realtime || wait_idle_;
+    if (going && waits) going = advance(machine);
+  }
+  if (buffer_line_ > 0) execute(machine, buffer_, buffer_line_);  // says that it is not closed
+  std::fflush(stdout);
+  return outcome_;
+}
+
+}  // namespace pmac::tool
