@@ -150,6 +150,7 @@ class Printer {
       return;
     }
     for (const std::string& line : edit.lines) put_line(line);
+    last_word_.clear();  // the ) of an open line is no condition
   }
 
   void end_file(std::int32_t file) {
