@@ -73,7 +73,7 @@ class DeclarationLowering {
     std::int64_t number = 0;
     for (const ir::Parameter& parameter : parameters) {
       if (names_.find(parameter.name)) before.push_back("#undef " + parameter.name);
-      behind.push_back(LoweredName{parameter.name, 'L', number++, false}.define());
+      behind.push_back(LoweredName{parameter.name, 'L', number++, false, 1}.define());
       stream_.names.insert(parameter.name);
       open.push_back(parameter.name);
     }
@@ -107,12 +107,12 @@ class DeclarationLowering {
     if (branches->otherwise) of_statement(*branches->otherwise, open);
   }
 
-  LoweredName lowered(const std::string& name, const sema::Name& entry) const { return {name, letter_of(entry.kind), entry.number, entry.size > 0}; }
+  LoweredName lowered(const std::string& name, const sema::Name& entry) const { return {name, letter_of(entry.kind), entry.number, entry.size > 0, 1}; }
 
   void of_globals(const ir::Globals& globals, const source::Span& span) {
     Edit edit{0, 0, Edit::Kind::kDeclaration, {}, {}, {}};
     for (const ir::GlobalDeclaration& name : globals.names) {
-      const LoweredName entry{name.name, name.variable_class == ir::VariableClass::kP ? 'P' : 'Q', name.number, name.size != nullptr};
+      const LoweredName entry{name.name, name.variable_class == ir::VariableClass::kP ? 'P' : 'Q', name.number, name.size != nullptr, 1};
       stream_.names.insert(name.name);
       if (entry.array) stream_.arrays.emplace(name.name, entry);
       edit.names.push_back(entry);
@@ -125,7 +125,7 @@ class DeclarationLowering {
     Edit edit{0, 0, Edit::Kind::kDeclaration, {}, {}, {}};
     for (const ir::LocalDeclaration& name : locals.names) {
       if (names_.find(name.name)) edit.lines.push_back("#undef " + name.name);
-      edit.names.push_back({name.name, 'L', name.number, name.size != nullptr});
+      edit.names.push_back({name.name, 'L', name.number, name.size != nullptr, 1});
       edit.fallbacks.push_back(name.value ? ir::print(*name.value) : std::string());
       stream_.names.insert(name.name);
       open.push_back(name.name);
@@ -137,7 +137,7 @@ class DeclarationLowering {
   void of_pointer(const ir::DefinePointer& pointer) {
     if (!pointer.declaration.valid()) return;
     std::vector<Edit>& edits = stream_.edits[pointer.declaration.file];
-    const LoweredName entry{pointer.name, 'M', pointer.definition.first_m, pointer.size > 0};
+    const LoweredName entry{pointer.name, 'M', pointer.definition.first_m, pointer.size > 0, pointer.definition.last_m - pointer.definition.first_m + 1};
     stream_.names.insert(pointer.name);
     if (entry.array) stream_.arrays.emplace(pointer.name, entry);
     const bool continues = !edits.empty() && edits.back().kind == Edit::Kind::kPointers && edits.back().begin == pointer.declaration.begin;

@@ -21,6 +21,12 @@ using Tokens = power_pmac::PreprocessorTokens;
 
 bool is_gap(const PreprocessorToken& token) { return token.kind == Kind::kBlank || token.kind == Kind::kNewline; }
 
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 /// The parts of a token list between commas outside of parentheses.
 std::vector<Tokens> split_at_commas(const Tokens& tokens) {
   std::vector<Tokens> parts(1);
@@ -50,6 +56,10 @@ class Printer {
   bool at_line_start() const { return out_.empty() || out_.back() == '\n'; }
   void put_line(const std::string& text) {
     if (!at_line_start()) out_ += '\n';
+    out_ += text + "\n";
+    line_ = -1;
+  }
+  void put_code(const std::string& text) {
     out_ += text + "\n";
     line_ = -1;
   }
@@ -83,6 +93,7 @@ class Printer {
     }
     indent_.clear();
     out_ += text;
+    if (token.kind != Kind::kBlank) last_word_ = lower(text);
   }
 
   void print_definition(const Tokens& tokens) {
@@ -90,11 +101,15 @@ class Printer {
     for (const PreprocessorToken& token : tokens)
       if (token.kind != Kind::kNewline) print_token(token, token.text);
     out_ += '\n';
-    line_ = -1;
+    if (line_ > 0) ++line_;
   }
 
   void print_text(const Tokens& tokens) {
     for (std::size_t i = 0; i < tokens.size();) {
+      if (is_replaced(tokens[i].span)) {
+        ++i;
+        continue;
+      }
       if (!tokens[i].span.valid() || is_gap(tokens[i])) {
         print_token(tokens[i], tokens[i].text);
         ++i;
@@ -114,6 +129,12 @@ class Printer {
     }
   }
 
+  /// Belongs to a declaration that began on a line before.
+  bool is_replaced(const source::Span& span) const {
+    const auto until = replaced_until_.find(span.file);
+    return until != replaced_until_.end() && span.begin < until->second;
+  }
+
   bool next_is_edit(const source::Span& span) const {
     const auto edits = stream_.edits.find(span.file);
     const auto at = next_.find(span.file);
@@ -129,6 +150,7 @@ class Printer {
       return;
     }
     for (const std::string& line : edit.lines) put_line(line);
+    last_word_.clear();  // the ) of an open line is no condition
   }
 
   void end_file(std::int32_t file) {
@@ -142,18 +164,23 @@ class Printer {
   /// A declaration: its #define lines, and its initialisers as assignments where it stood. Returns the first token behind it.
   std::size_t replace(const Tokens& tokens, std::size_t begin, const Edit& edit) {
     std::size_t end = begin;
+    replaced_until_[tokens[begin].span.file] = edit.end;
     while (end < tokens.size() && tokens[end].span.begin < edit.end) ++end;
-    const bool is_body = stands_as_body();
+    const bool is_body = !edit.names.empty() && edit.names.front().letter == 'L' && stands_as_body();
     const Tokens inside(tokens.begin() + static_cast<std::ptrdiff_t>(std::min(begin + 1, end)), tokens.begin() + static_cast<std::ptrdiff_t>(end));
     for (const std::string& line : edit.lines) put_line(line);
     for (const LoweredName& name : edit.names) put_line(name.define());
     const std::vector<std::string> assignments = edit.kind == Edit::Kind::kPointers ? pointers(inside, edit) : initialisers(inside, edit);
     if (assignments.empty() && !is_body) return behind_semicolon(tokens, end);
+    if (edit.kind == Edit::Kind::kPointers) {
+      for (const std::string& definition : assignments) {
+        synchronise(tokens[begin].span);
+        put_code(definition);
+      }
+      return behind_semicolon(tokens, end);
+    }
     synchronise(tokens[begin].span);
-    if (is_body) out_ += "{ ";
-    for (const std::string& assignment : assignments) out_ += assignment + (edit.kind == Edit::Kind::kPointers ? "\n" : "; ");
-    if (is_body) out_ += "}";
-    if (edit.kind == Edit::Kind::kPointers) line_ = -1;
+    out_ += fmt::format(fmt::runtime(is_body ? "{{ {} }}" : "{}"), fmt::join(assignments, "; "));
     const bool took_lines = std::any_of(inside.begin(), inside.end(), [](const PreprocessorToken& t) { return t.kind == Kind::kNewline; });
     if (took_lines && !at_line_start()) {
       out_ += '\n';
@@ -168,18 +195,7 @@ class Printer {
   }
 
   /// Behind a condition, else or do the declaration is the one statement that belongs to it.
-  bool stands_as_body() const {
-    const std::size_t last = out_.find_last_not_of(" \t\n");
-    if (last == std::string::npos) return false;
-    if (out_[last] == ')') return true;
-    const auto ends_with = [&](std::string_view word) {
-      if (last + 1 < word.size()) return false;
-      for (std::size_t i = 0; i < word.size(); ++i)
-        if (std::tolower(static_cast<unsigned char>(out_[last + 1 - word.size() + i])) != word[i]) return false;
-      return last + 1 == word.size() || !std::isalnum(static_cast<unsigned char>(out_[last - word.size()]));
-    };
-    return ends_with("else") || ends_with("do");
-  }
+  bool stands_as_body() const { return last_word_ == ")" || last_word_ == "else" || last_word_ == "do"; }
 
   std::string text_of(const Tokens& tokens) {
     std::string text;
@@ -209,7 +225,9 @@ class Printer {
     for (std::size_t i = 0; i < edit.names.size() && i < parts.size(); ++i) {
       auto arrow = parts[i].begin();
       while (arrow + 1 < parts[i].end() && !(arrow->text == "-" && (arrow + 1)->text == ">")) ++arrow;
-      definitions.push_back((edit.names[i].array ? edit.names[i].variable() : edit.names[i].name) + text_of({arrow, parts[i].end()}));
+      const LoweredName& name = edit.names[i];
+      const std::string range = name.pointers > 1 ? fmt::format("{},{}", name.variable(), name.pointers) : name.variable();
+      definitions.push_back((name.array ? range : name.name) + text_of({arrow, parts[i].end()}));
     }
     return definitions;
   }
@@ -240,7 +258,9 @@ class Printer {
   const source::SourceManager& sources_;
   LoweredStream stream_;
   std::map<std::int32_t, std::size_t> next_;  // edit by file
+  std::map<std::int32_t, std::uint32_t> replaced_until_;  // by file
   std::string out_, file_, indent_;
+  std::string last_word_;   // of the code, in small letters
   int line_ = -1;   // of the source, that the line of the output stands for; -1: unknown
 };
 

@@ -18,6 +18,7 @@ struct LoweredName {
   char letter = 'P';
   std::int64_t number = 0;
   bool array = false;
+  std::int64_t pointers = 1;       // how many a ptr declaration of an array defines
   std::string define() const;      // #define Name P8192, #define Name(i) P(8192+(i))
   std::string variable() const;    // P8192
 };

@@ -133,8 +133,11 @@ void ProgramWriter::write(const ir::Locals& node, const source::Span&) {
 }
 
 void ProgramWriter::write(const ir::Globals& node, const source::Span&) {
-  for (const ir::GlobalDeclaration& name : node.names)
+  const Register first = next_;
+  for (const ir::GlobalDeclaration& name : node.names) {
     if (name.value) store_variable(ir::Variable{name.variable_class, name.number, nullptr, {}}, value(*name.value));
+    next_ = first;
+  }
 }
 
 // --- flow ---------------------------------------------------------------------------------------------------------------------

@@ -1,10 +1,12 @@
 // pmacc -E: what it prints compiles to the same bytecode, instruction by instruction and line by line. Compared are disassemblies:
-// without the symbols, which are macros in what -E prints, and without the names of pointers.
+// without the symbols, which are macros in what -E prints, without the names of pointers, and without the sizes of frames, where
+// locals that are declared and never used count.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <sstream>
 
 #include "compiler/compiler.h"
 #include "compiler/project/project.h"
@@ -23,14 +25,29 @@ std::string messages_of(compiler::Session& session) {
 
 /// Sections of a disassembly that begin with one of these words; the load scripts of all files as one list of instructions.
 struct Code {
-  std::vector<std::string> programs, definitions;
-  std::string load;
+  std::vector<std::string> programs, definitions, load;
 };
 
-std::string without_numbers(const std::string& section) {
-  std::string text = std::regex_replace(section, std::regex("(^|\n) *[0-9]+  "), "$1");
-  text = std::regex_replace(text, std::regex("(^|\n)(online [^\n]*|return[^\n]*)(?=\n|$)"), "");
-  return std::regex_replace(text, std::regex("(axis definition|pointer) [0-9]+"), "$1");
+/// Each instruction with the place that holds for it: a place is printed only where a statement begins.
+std::string with_places(const std::string& section) {
+  std::istringstream lines(section);
+  std::string text, place;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find(" ; ");
+    if (at != std::string::npos) place = line.substr(at);
+    text += line.substr(0, line.find_last_not_of(' ', at) + 1) + place + "\n";
+  }
+  return text;
+}
+
+/// The instructions of a load script, without their places in it and without those of table rows.
+void append_load(const std::string& section, std::vector<std::string>& load) {
+  std::istringstream lines(section);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string text = std::regex_replace(line, std::regex("^ *[0-9]+  "), "");
+    const bool frame = text.starts_with("online ") || text.starts_with("return");
+    if (!frame && !text.empty()) load.push_back(std::regex_replace(text, std::regex("(axis|pointer) [0-9]+ *"), "$1 "));
+  }
 }
 
 Code code_of(const bytecode::Module& module) {
@@ -40,10 +57,10 @@ Code code_of(const bytecode::Module& module) {
     const std::size_t end = std::min(text.find("\n\n", at), text.size());
     const std::string section = text.substr(at, end - at);
     at = end + 2;
-    if (section.starts_with("symbols") || section.starts_with("files")) continue;
-    if (section.starts_with("online ")) code.load += without_numbers(section);
+    if (section.starts_with("symbols") || section.starts_with("files") || section.starts_with("load order")) continue;
+    if (section.starts_with("online ")) append_load(with_places(section), code.load);
     else if (section.starts_with("pointer definitions") || section.starts_with("axis definitions")) code.definitions.push_back(std::regex_replace(section, std::regex(" +\\([A-Za-z_0-9]+\\)"), ""));
-    else code.programs.push_back(section);
+    else code.programs.push_back(std::regex_replace(with_places(section), std::regex(": [0-9]+ locals, [0-9]+ registers"), ""));
   }
   return code;
 }
