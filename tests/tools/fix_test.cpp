@@ -29,7 +29,7 @@ TEST_CASE("repairs are made in place, said, and are the same the second time", "
 
 TEST_CASE("a guess that is not certain is shown and not made", "[fix]") {
   const Workspace w;
-  const std::string text = "global Speed, Spend\nP1 = Speet\n";
+  const std::string text = "global Speed, Speep\nP1 = Speet\n";
   w.write("a.pmc", text);
   const ToolResult r = w.run("pmacc", "--fix a.pmc");
   CHECK(r.code == 1);

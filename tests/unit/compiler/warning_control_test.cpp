@@ -45,7 +45,7 @@ TEST_CASE("a named warning option wins over all and extra; the last of two wins"
   CHECK(options({"no-array-bounds", "array-bounds"}).is_on(row("PM3047")));
 }
 
-TEST_CASE("-Werror=name switches a warning on and makes it an error; -Wno-error=name leaves it a warning", "[warnings]") {
+TEST_CASE("option -Werror=name switches a warning on and makes it an error; -Wno-error=name leaves it a warning", "[warnings]") {
   CHECK(options({"error=stored-element"}).is_on(row("PM6010")));
   CHECK(options({"error=stored-element"}).is_error(row("PM6010")));
   CHECK(options({"error"}).is_error(row("PM3047")));
@@ -88,7 +88,7 @@ TEST_CASE("a suppression comment must be one, and keeps no error quiet", "[warni
   CHECK(codes("nothing = 1 // pmacc: ignore(undeclared)\n").find("E3054") == 0);
 }
 
-TEST_CASE("-Wextra names suppressions of unknown names, and those without use", "[warnings]") {
+TEST_CASE("option -Wextra names suppressions of unknown names, and those without use", "[warnings]") {
   CHECK(codes("P1 = 1 // pmacc: ignore(array-bounds)\n", options({"extra"})) == "W7021 ");
   CHECK(codes("P1 = 1 // pmacc: ignore(array-bound)\n", options({"extra"})) == "W7020 ");
   CHECK(codes(kTable + "Table(10) = 1  // pmacc: ignore(array-bounds)\n", options({"extra"})).empty());
