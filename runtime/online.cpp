@@ -175,7 +175,7 @@ Flow coord_verb(const Call& call) {
 }
 
 bool may_jog(const Call& call, const Motor& m) {
-  const bool jogs = call.verb >= ControlVerb::kJogPlus && call.verb <= ControlVerb::kJogByActualTrigger;
+  const bool jogs = call.verb >= ControlVerb::kJogPlus && call.verb <= ControlVerb::kJogByActualTrigger && call.verb != ControlVerb::kJogStop;
   if (jogs && !(call.s.elements.get(ElementId::kMotorJogSpeed, static_cast<unsigned>(m.number)) > 0)) {
     call.refusal = fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].JogSpeed is not above 0", m.number);
     return false;

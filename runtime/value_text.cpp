@@ -22,6 +22,7 @@ std::string with_short_exponent(std::string text) {
 
 /// Like %g, but magnitudes below 0.001 have an exponent already.
 std::string digits_text(double value, int digits) {
+  if (std::isnan(value)) return "nan";  // whatever its sign
   const bool small = value != 0 && std::abs(value) < 1e-3;
   if (!small) return with_short_exponent(fmt::format("{:.{}g}", value, digits));
   std::string text = fmt::format("{:.{}e}", value, digits - 1);

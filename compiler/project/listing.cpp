@@ -60,6 +60,15 @@ std::vector<fs::path> scripts_in(const fs::path& folder) {
   return files;
 }
 
+/// The scripts of Global Includes and the other script folders of `scripts`, which lies at `relative` below the project's folder.
+void add_script_folders(const fs::path& scripts, const fs::path& relative, Listing& listing) {
+  for (const std::string_view name : kFolders) {
+    const auto sub = find_file(scripts, name);
+    if (!sub) continue;
+    for (const fs::path& file : scripts_in(*sub)) listing.entries.push_back({(relative / sub->filename() / file.filename()).generic_string(), {}});
+  }
+}
+
 }  // namespace
 
 std::optional<std::string> read_bytes(const fs::path& path, std::size_t limit) {
@@ -105,15 +114,10 @@ Listing list_folder(const fs::path& folder) {
   listing.root = folder;
   const auto scripts = find_file(folder, kScriptFolder);
   std::error_code error;
-  if (!scripts || !fs::is_directory(*scripts, error)) {
+  if (scripts && fs::is_directory(*scripts, error)) add_script_folders(*scripts, scripts->filename(), listing);
+  else add_script_folders(folder, {}, listing);
+  if (listing.entries.empty())
     for (const fs::path& file : scripts_in(folder)) listing.entries.push_back({file.filename().string(), {}});
-    return listing;
-  }
-  for (const std::string_view name : kFolders) {
-    const auto sub = find_file(*scripts, name);
-    if (!sub) continue;
-    for (const fs::path& file : scripts_in(*sub)) listing.entries.push_back({(scripts->filename() / sub->filename() / file.filename()).generic_string(), {}});
-  }
   return listing;
 }
 

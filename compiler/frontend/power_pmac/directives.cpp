@@ -26,6 +26,7 @@ constexpr std::array<std::string_view, 15> kDirectives{"define",  "undef", "ifde
 std::string text_of(const std::vector<Token>& line, std::size_t first, std::size_t last) {
   std::string text;
   for (std::size_t i = first; i < last; ++i) text += line[i].text;
+  text.erase(std::find_if(text.rbegin(), text.rend(), [](unsigned char c) { return !std::isspace(c); }).base(), text.end());
   return text;
 }
 
