@@ -64,3 +64,16 @@ TEST_CASE("what is no project ends with exit code 2", "[tools][project]") {
     CHECK(w.run("pmac-run", name).code == 2);
   }
 }
+
+TEST_CASE("script folders may stand in the project's folder itself", "[tools][project]") {
+  const Workspace w;
+  for (const char* folder : {"s/PLC Programs", "s/Global Includes", "s/Motion Programs"}) std::filesystem::create_directories(w.path(folder));
+  w.write("s/Global Includes/names.pmh", "global A;\n");
+  w.write("s/Motion Programs/one.pmc", "open prog 1\nA = 1\nclose\n");
+  w.write("s/PLC Programs/two.plc", "open plc 2\nA = 2\nclose\n");
+  const ToolResult files = w.run("pmacc", "--emit=files s");
+  CHECK(files.code == 0);
+  CHECK(files.out.find("names.pmh") < files.out.find("one.pmc"));
+  CHECK(files.out.find("one.pmc") < files.out.find("two.plc"));
+  CHECK(w.run("pmacc", "--check s").code == 0);
+}
