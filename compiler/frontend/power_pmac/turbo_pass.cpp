@@ -53,7 +53,7 @@ class TurboPass {
       if (type == T::OPEN) take_open(i);
       else if (type == T::ARROW) take_pointer(i);
       else if (type == T::CMD && tokens_.text(i + 1) == "^") take_control_character(i);
-      else if (type == T::DELETE) take_delete(i);
+      else if (type == T::DELETE || (type == T::NAME && tokens_.text(i) == "end")) take_gather(i);
       else if (type == T::NUMBER) take_timer(i);
       else if (type == T::RANGE) take_range(i);
       else if (type == T::NAME && is_statement_word(i)) take_word(i);
@@ -158,10 +158,11 @@ class TurboPass {
     tokens_.drop(i, i + 1);
   }
 
-  void take_delete(std::size_t i) {
+  /// DELETE GATHER, END GATHER
+  void take_gather(std::size_t i) {
     const std::string what = tokens_.text(i + 1);
     if (what != "gather" && what != "trace" && what != "gat") return;
-    tokens_.error("PM2025", source::join(tokens_.span(i), tokens_.span(i + 1)), "Power PMAC has no gather buffer to delete; the elements Gather.Enable, Gather.Items and Gather.Addr[] set data gathering up");
+    tokens_.error("PM2025", source::join(tokens_.span(i), tokens_.span(i + 1)), "gathering is not set up by commands in Power PMAC; the elements Gather.Enable, Gather.Items and Gather.Addr[] do it");
     tokens_.drop(i, i + 1);
   }
 

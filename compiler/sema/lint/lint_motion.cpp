@@ -37,13 +37,15 @@ void lint_plc(const ir::Buffer& buffer, source::Diagnostics& diagnostics) {
                          {}});
 }
 
-/// A synchronous assignment at the end of a program, with nothing behind it that it could wait for.
+/// A synchronous assignment at the end of a program, with nothing behind it that it could wait for. Behind a label it may belong to
+/// a routine that returns to moves.
 void lint_last_assignments(const ir::Buffer& buffer, source::Diagnostics& diagnostics) {
   const auto last = std::find_if(buffer.body.rbegin(), buffer.body.rend(), [](const ir::StmtPtr& statement) {
     bool found = may_move(*statement);
     ir::walk(*statement, {[&](const ir::Stmt& inner) { found = found || may_move(inner); }, {}});
     return found;
   });
+  if (last != buffer.body.rend() && std::holds_alternative<ir::Label>((*last)->node)) return;
   for (auto at = last.base(); at != buffer.body.end(); ++at) {
     if (!is_synchronous(**at)) continue;
     diagnostics.warning("PM7019", (*at)->span, "no move, dwell or delay follows, so this assignment is never done; write = or put dwell 0 behind it");
