@@ -10,6 +10,8 @@
 #include <regex>
 #include <set>
 
+#include "compiler/compiler.h"
+
 using namespace pmac::source;
 
 namespace {
@@ -33,6 +35,23 @@ std::map<std::string, std::set<std::string>> reported_codes() {
     for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it) codes[(*it)[2]].insert((*it)[1]);
   }
   return codes;
+}
+
+/// What an example stands in: files, or buffers.
+struct Context { const char* before; const char* after; };
+constexpr Context kContexts[] = {{"", ""},
+                                 {"open prog 1\n", "\nclose"},
+                                 {"open plc 1\n", "\nclose"},
+                                 {"global Table(10), Speed\nopen prog 1\nlocal i, m\nlinear\n", "\nclose"},
+                                 {"global Table(10), Speed\nopen plc 1\nlocal i, m\n", "\nclose"}};
+
+bool gives(const Context& context, std::string_view example, std::string_view code) {
+  pmac::compiler::Options options;
+  CHECK(options.warnings.apply("extra").empty());
+  pmac::compiler::Session session(options);
+  session.compile({{"example.pmc", context.before + std::string(example) + context.after + "\n"}});
+  const auto found = session.diagnostics().take();
+  return std::any_of(found.begin(), found.end(), [&](const Diagnostic& diagnostic) { return diagnostic.code == code; });
 }
 
 }  // namespace
@@ -77,6 +96,18 @@ TEST_CASE("an explanation has title, text and both examples; case does not count
   CHECK(explain("PM6003").find("-Wunserved-axis") != std::string::npos);
   CHECK(explain("PM9998").empty());
   CHECK(nearest_code("PM20111") == "PM2011");
+}
+
+TEST_CASE("the wrong example of a message gives it, and the right one does not", "[messages]") {
+  for (const MessageInfo& row : message_table()) {
+    if (row.wrong.empty() || row.code == "PM1005") continue;  // its right example names a file
+    const auto context = std::find_if(std::begin(kContexts), std::end(kContexts), [&](const Context& c) { return gives(c, row.wrong, row.code); });
+    INFO(row.code << " " << row.wrong);
+    CHECK(context != std::end(kContexts));
+    if (context == std::end(kContexts) || row.right.empty()) continue;
+    INFO(row.right);
+    CHECK_FALSE(gives(*context, row.right, row.code));
+  }
 }
 
 TEST_CASE("docs/messages.md is the table of messages", "[messages]") {
