@@ -47,6 +47,10 @@ std::string examples(const MessageInfo& row) {
 
 std::string option_of(const MessageInfo& row) { return row.group.empty() ? std::string() : fmt::format(", -W{}", row.group); }
 
+std::string explanation(const MessageInfo& row) {
+  return fmt::format("{}: {} ({}{})\n\n{}\n{}", row.code, row.title, level_text(row.level), option_of(row), row.explanation, examples(row));
+}
+
 }  // namespace
 
 std::span<const MessageInfo> message_table() { return kTable; }
@@ -68,10 +72,12 @@ const std::vector<std::string_view>& warning_groups() {
 
 bool is_warning_group(std::string_view name) { return std::find(warning_groups().begin(), warning_groups().end(), name) != warning_groups().end(); }
 
-std::string explain(std::string_view code) {
-  const MessageInfo* row = find_message(upper(code));
-  if (!row) return {};
-  return fmt::format("{}: {} ({}{})\n\n{}\n{}", row->code, row->title, level_text(row->level), option_of(*row), row->explanation, examples(*row));
+std::string explain(std::string_view code_or_group) {
+  if (const MessageInfo* row = find_message(upper(code_or_group))) return explanation(*row);
+  std::string text;
+  for (const MessageInfo& row : kTable)
+    if (!code_or_group.empty() && row.group == code_or_group) text += (text.empty() ? "" : "\n") + explanation(row);
+  return text;
 }
 
 std::string_view nearest_code(std::string_view code) {

@@ -31,8 +31,8 @@ const MessageInfo* find_message(std::string_view code);
 const std::vector<std::string_view>& warning_groups();
 bool is_warning_group(std::string_view name);
 
-/// A few sentences with a wrong and a right example, or empty for an unknown code. Case does not count.
-std::string explain(std::string_view code);
+/// A few sentences with a wrong and a right example, of a code (in either case) or of every message of a warning group; empty where there is none.
+std::string explain(std::string_view code_or_group);
 
 /// The known code nearest to a mistyped one, or empty.
 std::string_view nearest_code(std::string_view code);

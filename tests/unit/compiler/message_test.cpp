@@ -95,6 +95,8 @@ TEST_CASE("an explanation has title, text and both examples; case does not count
         "wrong:\n\n    if (P1 = 5) P2 = 1\n\nright:\n\n    if (P1 == 5) P2 = 1\n");
   CHECK(explain("PM6003").find("-Wunserved-axis") != std::string::npos);
   CHECK(explain("PM9998").empty());
+  CHECK(explain("").empty());
+  CHECK(explain("no-coord") == explain("PM6001") + "\n" + explain("PM6002"));
   CHECK(nearest_code("PM20111") == "PM2011");
 }
 

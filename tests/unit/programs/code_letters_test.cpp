@@ -140,7 +140,9 @@ TEST_CASE("a while loop of a PLC program is tested at the beginning of the next 
   // P1 becomes 0 between two scans; the body must not run again, and what follows the loop runs in the scan that finds it 0
   ProgramBench bench("a.plc", "Sys.MaxRtPlc=1\nopen plc 1\nP2=0\nwhile (P1 == 1) { P2++ P3=Sys.ServoCount }\nP4=Sys.ServoCount P5=P2\ndisable plc 1\nclose\n");
   bench.machine->at(10.0, "P1=0");
-  bench.run("P1=1 enable plc 1", {.until_ms = 20.0});
+  pmac::runtime::RunLimits limits;
+  limits.until_ms = 20.0;
+  bench.run("P1=1 enable plc 1", limits);
   bench.machine->command("Coord[1].Q[1]=P4-P3 Coord[1].Q[2]=P5", "-e");
   std::string answers;
   REQUIRE(bench.faults.empty());
