@@ -31,7 +31,8 @@ void CoordSystem::ensure_sequence(double time_ms) {
   pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
   before_mu_.clear();
-  sampled_to_ms_ = sequence_start_ms_ = path_ms;
+  forget_retrace();
+  sequence_start_ms_ = path_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
 }
 
@@ -52,6 +53,7 @@ motion::PipelineConfig CoordSystem::config() {
   c.corner_blend_bp = e.get(ElementId::kCoordCornerBlendBp, cs);
   c.corner_dwell_bp = e.get(ElementId::kCoordCornerDwellBp, cs);
   c.added_dwell_ms = e.get(ElementId::kCoordAddedDwellTime, cs);
+  c.history_ms = c.segment_time_ms > 0 ? history_wanted_ms() : 0;
   c.map = motor_map();
   for (int motor : c.map.motors) {
     const auto n = static_cast<unsigned>(motor);
@@ -279,7 +281,6 @@ void CoordSystem::start_rapid(double time_ms) {
 void CoordSystem::sample(double start_ms, double period_ms, int count, std::span<double> position_mu) {
   if (time_base_.is_real_time()) pipeline_.sample(start_ms, period_ms, count, position_mu, {});
   else sample_by_clock(start_ms, period_ms, count, position_mu);
-  sampled_to_ms_ = time_base_.path_at(start_ms + (count - 1) * period_ms);
   for (std::size_t i = 0; i < path_map_.motors.size(); ++i) {
     Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
     const std::size_t last = (i + 1) * static_cast<std::size_t>(count) - 1;
@@ -294,11 +295,11 @@ void CoordSystem::sample_by_clock(double start_ms, double period_ms, int count, 
   const std::size_t motors = path_map_.motors.size();
   for (int done = 0; done < count;) {
     const double first_ms = start_ms + done * period_ms;
-    const double steady_ms = time_base_.steady_until_ms(first_ms);
+    const double steady_ms = retracing() ? first_ms : time_base_.steady_until_ms(first_ms);
     int n = 1;
     while (done + n < count && first_ms + n * period_ms <= steady_ms) ++n;
     sample_run_.resize(motors * static_cast<std::size_t>(n));
-    pipeline_.sample(time_base_.path_at(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
+    pipeline_.sample(path_position(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
     for (std::size_t m = 0; m < motors; ++m)
       std::copy_n(sample_run_.begin() + static_cast<std::ptrdiff_t>(m) * n, n,
                   position_mu.begin() + static_cast<std::ptrdiff_t>(m) * count + done);

@@ -175,6 +175,7 @@ void Pipeline::reset(const PipelineConfig& config, const AxisVector& start_uu, d
   state_->config = config;
   state_->build_stages();
   state_->timings.reset(state_->segmented());
+  state_->timeline.keep_history(config.history_ms);
   state_->timeline.reset(std::vector<double>(state_->kinematics.count()), start_time_ms);
   state_->earliest_ms = start_time_ms;
   state_->fault = state_->start_at(start_uu, {});
@@ -237,6 +238,10 @@ void Pipeline::sample(double start_ms, double period_ms, int count, std::span<do
 }
 
 void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
+
+double Pipeline::oldest_ms() const { return state_->timeline.oldest_ms(); }
+
+double Pipeline::history_start_ms(double time_ms, double amount_ms) const { return state_->timeline.history_start_ms(time_ms, amount_ms); }
 
 SourceLine Pipeline::executing_source(double time_ms) const { return state_->timeline.source_at(time_ms); }
 

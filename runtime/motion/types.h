@@ -84,6 +84,7 @@ struct PipelineConfig {
   RampRule ramp_rule = RampRule::kPower;
   bool lookahead = false;               // segmented only
   int lookahead_segments = 0;           // LHDistance
+  double history_ms = 0;                // programmed time behind the last sample that stays known, for retracing
   double servo_period_ms = 0.44274211;  // at which limits are counted where the path's velocity steps; 0: stop there
   double radius_error_limit_uu = 0;     // 0: off
   double min_arc_len = 0;               // semicircles; 0: 2^-20
