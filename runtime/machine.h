@@ -57,6 +57,10 @@ struct FaultRecord {
   Fault fault;
 };
 
+/// With limit_jerk: a place where the path's acceleration steps, as where a line meets an arc. ratio: the jerk that this is at servo rate,
+/// in limits of the motor for which that is most.
+struct JerkJoin { double time_ms = 0; int coord = -1; bytecode::SourceLine source; double ratio = 0; };
+
 /// What the owner wants to hear. Any may be empty.
 struct MachineObservers {
   std::function<void(const std::string&)> answer;            // reports of on-line commands, [send N] lines
@@ -66,12 +70,14 @@ struct MachineObservers {
   std::function<void(const OutputChange&)> output;
   std::function<void(const FaultRecord&)> fault;
   std::function<void(int coord, const motion::MotionCommand&)> motion_command;
+  std::function<void(const JerkJoin&)> jerk_join;
   std::function<void(double time_ms)> progress;               // now and then while running
 };
 
 struct MachineOptions {
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool limit_jerk = false;              // lookahead keeps Motor[].InvJmax as well
   OnlineCompiler compile_online;                              // cmd "...", --at, console
   /// A line of a source file, for list; empty where the owner has no source.
   std::function<std::optional<std::string>(const std::string& file, int line)> source_text;

@@ -50,6 +50,7 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   };
   o.move = [&report](const runtime::MoveRecord& move) { report.add(move); };
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
+  o.jerk_join = [&report](const runtime::JerkJoin& join) { report.add(join); };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {
     report.add(record);
     const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : "coordinate system " + std::to_string(record.coord);
@@ -120,6 +121,7 @@ int run(const RunOptions& options) {
   runtime::MachineOptions machine_options;
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
+  machine_options.limit_jerk = options.limit_jerk;
   machine_options.max_instructions = options.max_instructions;
   Console console(options);
   machine_options.compile_online = online_compiler(session, &console.error_place());

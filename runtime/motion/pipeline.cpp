@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/motion/jerk_lookahead.h"
 #include "runtime/motion/lookahead.h"
 #include "runtime/motion/planner.h"
 #include "runtime/motion/segmenter.h"
@@ -57,7 +58,7 @@ struct Pipeline::State {
   MotorKinematics kinematics;
   Planner planner;
   std::optional<Segmenter> segmenter;   // segmented only
-  std::optional<Lookahead> lookahead;
+  std::unique_ptr<TimeLaw> lookahead;   // where it is on
   Timeline timeline;
   Timings timings;
   StageObservers observers;
@@ -87,7 +88,8 @@ void Pipeline::State::build_stages() {
   if (segmented()) segmenter.emplace(config, kinematics);
   if (segmented() && config.lookahead) {
     const double window_ms = config.lookahead_segments * config.segment_time_ms;
-    lookahead.emplace(config.limits, window_ms, config.servo_period_ms);
+    if (config.limit_jerk) lookahead = std::make_unique<JerkLookahead>(config.limits, window_ms, config.servo_period_ms);
+    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms);
   }
 }
 

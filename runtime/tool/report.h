@@ -19,6 +19,7 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+  void add(const runtime::JerkJoin& join);
   void add_refusal(const std::string& command, const std::string& reason) { refusals_.emplace_back(command, reason); }
 
   /// Moves in order of their start. The object of --json; see docs/pmac-run.md for its keys.
@@ -39,6 +40,9 @@ class Report {
   std::vector<runtime::MoveRecord> moves_;
   std::vector<runtime::OutputChange> outputs_;
   std::vector<runtime::FaultRecord> faults_;
+  static constexpr std::size_t kMostJoins = 1000;   // kept; the others are counted
+  std::size_t join_count_ = 0;
+  std::vector<runtime::JerkJoin> joins_;
   std::vector<std::pair<std::string, std::string>> refusals_;   // command, reason
 };
 
