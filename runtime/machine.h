@@ -55,6 +55,7 @@ struct FaultRecord {
   double time_ms = 0;
   int coord = -1, plc = -1;
   Fault fault;
+  int motor = -1;               // whose fault it is, where it is one motor's
 };
 
 /// What the owner wants to hear. Any may be empty.

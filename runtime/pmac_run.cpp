@@ -52,7 +52,7 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {
     report.add(record);
-    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : "coordinate system " + std::to_string(record.coord);
+    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : record.coord < 0 ? "motor " + std::to_string(record.motor) : "coordinate system " + std::to_string(record.coord);
     std::fprintf(stderr, "%s: fault at %.6f s, %s: %s\n", machine->place(record.fault.source).c_str(), record.time_ms / 1000.0,
                  who.c_str(), record.fault.detail.c_str());
   };

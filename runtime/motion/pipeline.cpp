@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "runtime/motion/lookahead.h"
 #include "runtime/motion/planner.h"
+#include "runtime/motion/position_limits.h"
 #include "runtime/motion/segmenter.h"
 #include "runtime/motion/timeline.h"
 #include "runtime/motion/timings.h"
@@ -13,6 +16,8 @@ namespace pmac::motion {
 namespace {
 
 using runtime::Fault;
+
+constexpr double kShortestSegment_ms = 1e-6;
 
 /// Unsegmented pvt: the cubic in u of each motor, u = u0 + rate * time.
 Segment pvt_segment(const PathPiece& piece) {
@@ -78,6 +83,7 @@ struct Pipeline::State {
   void to_times(bool ends);
   void deliver();
   Fault stop_at(Fault reason);
+  std::optional<Fault> end_at_limit();
 };
 
 void Pipeline::State::build_stages() {
@@ -114,6 +120,7 @@ std::optional<Fault> Pipeline::State::run_stages(bool ends) {
   if (observers.path) std::for_each(planned.pieces.begin(), planned.pieces.end(), observers.path);
   auto problem = to_segments(ends);
   if (problem) fault = stop_at(*problem);
+  if (auto limit = end_at_limit()) problem = fault = std::move(limit);
   planned.begins.clear();
   planned.ends.clear();
   planned.pieces.clear();
@@ -137,6 +144,25 @@ Fault Pipeline::State::stop_at(Fault reason) {
   segmenter->abandon(segments);
   in_sequence = false;
   return reason;
+}
+
+/// With lookahead the path ends where a motor meets its software limit; what lies behind is forgotten.
+std::optional<Fault> Pipeline::State::end_at_limit() {
+  for (std::size_t i = 0; lookahead && i < segments.size(); ++i) {
+    const auto crossing = first_crossing(segments[i], config.limits);
+    if (!crossing) continue;
+    const SourceLine source = segments[i].source;
+    segments[i].duration_ms = crossing->at_ms;
+    segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(crossing->at_ms > kShortestSegment_ms ? i + 1 : i), segments.end());
+    std::vector<Segment> behind;
+    segmenter->abandon(behind);
+    in_sequence = false;
+    const auto m = static_cast<std::size_t>(crossing->motor);
+    const double limit_mu = crossing->plus ? config.limits[m].max_position_mu : config.limits[m].min_position_mu;
+    return Fault{runtime::FaultKind::kSoftLimit, source,
+                 fmt::format("motor {} stops on the path at Motor[{}].{} = {}", config.map.motors[m], config.map.motors[m], crossing->plus ? "MaxPos" : "MinPos", limit_mu)};
+  }
+  return std::nullopt;
 }
 
 void Pipeline::State::to_times(bool ends) {

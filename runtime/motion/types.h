@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct MotorLimits {
   double inv_amax_ms2_mu = 0;
   double inv_dmax_ms2_mu = 0;
   double inv_jmax_ms3_mu = 0;
+  double min_position_mu = -std::numeric_limits<double>::infinity(), max_position_mu = std::numeric_limits<double>::infinity();  // lookahead only
 };
 
 enum class FineInterpolation : std::uint8_t { kThrough, kBspline };
