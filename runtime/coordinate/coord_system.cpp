@@ -75,6 +75,11 @@ bool CoordSystem::executes(const bytecode::Program* program) const {
   return program_active() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);
 }
 
+bytecode::SourceLine CoordSystem::executing_source(double time_ms) const {
+  if (on_path_) return pipeline_.executing_source(time_base_.path_at(time_ms));
+  return rapid_open_ ? rapid_.source : bytecode::SourceLine{};
+}
+
 void CoordSystem::observe(motion::StageObservers observers) {
   observers_ = std::move(observers);
   pipeline_.observe(observers_);

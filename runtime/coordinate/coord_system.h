@@ -127,6 +127,8 @@ class CoordSystem {
   bool on_path() const { return on_path_; }
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
   const std::vector<int>& path_motors() const { return path_map_.motors; }
+  /// The line whose move the motors execute at a tick of the last block.
+  bytecode::SourceLine executing_source(double time_ms) const;
   /// Reports the moves that have begun and whose end is still to come: with the end that is planned where they go_on, else with time_ms.
   void report_unfinished(double time_ms, bool go_on);
 
@@ -213,6 +215,7 @@ class CoordSystem {
   std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
                                         std::vector<motion::JogParameters>& parameters) const;
   void report_rapid(double time_ms);
+  std::vector<motion::GoverningShare> rapid_governed() const;
   void start_homing(double time_ms);
   void motors_arrived(double time_ms);
   void collect_timings();
