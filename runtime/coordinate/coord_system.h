@@ -239,6 +239,7 @@ class CoordSystem {
   std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
                                         std::vector<motion::JogParameters>& parameters) const;
   void report_rapid(double time_ms);
+  std::vector<motion::GoverningShare> rapid_governed() const;
   void start_homing(double time_ms);
   void motors_arrived(double time_ms);
   void collect_timings();

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motion/governing.h"
 #include "runtime/motor_moves.h"
 #include "runtime/servo/servo_cycle.h"
 #include "runtime/state.h"
@@ -45,6 +46,7 @@ motion::PipelineConfig CoordSystem::config() {
   c.servo_period_ms = machine_.period_ms();
   c.fine = machine_.options.fine;
   c.ramp_rule = machine_.options.ramp_rule;
+  c.note_governing = machine_.options.note_governing;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
   c.lookahead = c.segment_time_ms > 0 && c.lookahead_segments > 1 && lookahead_buffer > 0;
   c.radius_error_limit_uu = e.get(ElementId::kCoordRadiusErrorLimit, cs);
@@ -353,21 +355,24 @@ void CoordSystem::record_executed(double time_ms) {
     const auto& [timing, mode, source] = executed_.front();
     const double end_ms = time_base_.time_at(timing.end_ms);
     if (end_ms > time_ms) return;
-    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu});
+    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu, motion::time_rule_name(timing.rule),
+            timing.governed});
   }
 }
 
 void CoordSystem::report_unfinished(double time_ms, bool go_on) {
   record_executed(time_ms);
-  const auto report = [&](std::string_view mode, bytecode::SourceLine source, double start_ms, double end_ms, double length) {
-    const bool known = go_on && end_ms < kNever;
-    if (start_ms < time_ms || known) record({mode, source, number_, -1, start_ms, known ? end_ms : time_ms, length});
+  const auto report = [&](MoveRecord move) {
+    const bool known = go_on && move.end_ms < kNever;
+    if (!known) move.end_ms = time_ms;
+    if (move.start_ms < time_ms || known) record(move);
   };
   for (; !executed_.empty(); executed_.pop_front()) {
     const auto& [timing, mode, source] = executed_.front();
-    report(mode, source, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu);
+    report({mode, source, number_, -1, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu,
+            motion::time_rule_name(timing.rule), timing.governed});
   }
-  if (rapid_open_) report("rapid", rapid_.source, rapid_start_ms_, motors_end_ms(), rapid_length_uu_);
+  if (rapid_open_) report({"rapid", rapid_.source, number_, -1, rapid_start_ms_, motors_end_ms(), rapid_length_uu_});
   rapid_open_ = false;
 }
 
