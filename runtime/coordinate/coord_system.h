@@ -96,8 +96,10 @@ class CoordSystem {
   /// A motor that belongs here gets a profile at time_ms: the clock it runs by.
   const TimeBase* clock_for_motion(double time_ms);
   void abort(double time_ms);
-  /// A run-time error: aborts, sets ErrorStatus and reports.
+  /// A run-time error: aborts, sets ErrorStatus and reports. A software limit ahead inside lookahead: the motion ends on the path at the
+  /// limit, then it is reported, and the program waits to be aborted.
   void fail(double time_ms, Fault fault);
+  void fail_at_once(double time_ms, Fault fault);
   bool program_running() const { return phase_ != Phase::kIdle && phase_ != Phase::kPaused; }
   /// Executing, or waiting to go on.
   bool program_active() const { return phase_ != Phase::kIdle; }
@@ -134,7 +136,11 @@ class CoordSystem {
   /// Motors that follow the pipeline: row i of position_mu gets count samples from start_ms on.
   bool on_path() const { return on_path_; }
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
+  /// The motors have followed the first kept of `count` samples that sample() gave. rows: [motors of used][kept], from home.
+  void follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu);
   const std::vector<int>& path_motors() const { return path_map_.motors; }
+  /// The line whose move, dwell or wait executes at the present time.
+  bytecode::SourceLine executing_source(double time_ms) const;
   /// Reports the moves that have begun and whose end is still to come: with the end that is planned where they go_on, else with time_ms.
   void report_unfinished(double time_ms, bool go_on);
 
@@ -151,6 +157,9 @@ class CoordSystem {
   /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
   const AxisVector& calculated_position() const { return program_uu_; }
   AxisVector commanded_position(double time_ms);
+  /// Where the motors are, and how far from where they are commanded to be.
+  AxisVector actual_position(double time_ms);
+  AxisVector following_error_uu(double time_ms);
   /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
   AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
@@ -159,7 +168,7 @@ class CoordSystem {
  private:
   enum class Shaping { kNone, kSlower, kFaster, kBack };
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
+  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd, kLimit };
 
   // control.cpp
   std::string start(double time_ms);
@@ -230,6 +239,7 @@ class CoordSystem {
   std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
                                         std::vector<motion::JogParameters>& parameters) const;
   void report_rapid(double time_ms);
+  std::vector<motion::GoverningShare> rapid_governed() const;
   void start_homing(double time_ms);
   void motors_arrived(double time_ms);
   void collect_timings();
@@ -244,7 +254,16 @@ class CoordSystem {
   std::optional<Fault> select_transform(double number, bytecode::SourceLine source);
   std::string rename_position();
 
+  // position_limits.cpp
+  bool has_position_limits() const;
+  std::optional<Fault> check_targets(const AxisVector& target_uu, bytecode::SourceLine source);
+  std::optional<Fault> limit_target(int motor, double& target_mu, bytecode::SourceLine source) const;
+  void stop_at_limit(double time_ms, Fault fault);
+  void stopped_at_limit(double time_ms);
+  void hold_at_limits(std::span<double> position_mu) const;
+
   // positions.cpp
+  AxisVector axes_at(double time_ms, bool actual);
   std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
   std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu);
 
@@ -266,6 +285,7 @@ class CoordSystem {
   AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
   bool stop_requested_ = false, pause_requested_ = false;
+  std::optional<Fault> limit_fault_;  // stopped, or stopping, on the path at a software limit: only abort ends it
   bool stepping_ = false;           // pauses after one item
   bool step_block_ = false;         // between bstart and bstop
   std::vector<double> paused_mu_;   // [motors_]

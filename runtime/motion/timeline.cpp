@@ -79,7 +79,7 @@ SourceLine Timeline::source_at(double time_ms) const {
 
 void Timeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
   int done = 0;
-  while (cursor_ > 0 && end_of(segments_[cursor_ - 1]) > start_ms) --cursor_;   // the path is retraced
+  while (cursor_ > 0 && count > 0 && end_of(segments_[cursor_ - 1]) > start_ms) --cursor_;  // the path is retraced, or a run was cut short
   while (done < count) {
     const double time_ms = start_ms + done * period_ms;
     while (cursor_ < segments_.size() && end_of(segments_[cursor_]) <= time_ms) ++cursor_;
