@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace pmac::motion {
 namespace {
@@ -19,6 +20,25 @@ Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
   for (MotorCubic& q : part.motor)
     q = {q.position(from_ms), q.velocity(from_ms), q.c2 + 3 * q.c3 * from_ms, q.c3};
   return part;
+}
+
+/// Into how many parts of equal time a segment is divided. None where its own acceleration is far from the limits: x is 1 there, or changes as
+/// on a straight line.
+int parts_of(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
+  constexpr double kFar = 0.1, kChange = 0.05;
+  constexpr int kMostParts = 16;
+  double accel = 0, change = 0, speed = 0;
+  const double h = segment.duration_ms;
+  for (std::size_t m = 0; m < segment.motor.size(); ++m) {
+    const MotorCubic& q = segment.motor[m];
+    const double inv_accel = m < limits.size() ? limits[m].inv_amax_ms2_mu / accel_share : 0;
+    accel = std::max(accel, inv_accel * std::max(std::abs(q.acceleration(0)), std::abs(q.acceleration(h))));
+    const double begin = q.velocity(0), middle = q.velocity(h / 2), end = q.velocity(h);
+    change = std::max(change, std::max({begin, middle, end}) - std::min({begin, middle, end}));
+    speed = std::max({speed, std::abs(begin), std::abs(middle), std::abs(end)});
+  }
+  if (accel < kFar || speed == 0) return 1;
+  return std::clamp(static_cast<int>(std::ceil(change / (kChange * speed))), 1, kMostParts);
 }
 
 /// The segment run through with x from x0 to x1; one of them is not zero.
@@ -64,7 +84,23 @@ void Lookahead::finish(std::vector<TimedSegment>& out) {
   at_start_ = true;
 }
 
+/// In parts, where the velocity of the program changes much: x is linear over each.
 void Lookahead::append(PreparedSegment prepared) {
+  const int parts = parts_of(prepared.segment, limits_, prepared.accel_share);
+  const double part_ms = prepared.segment.duration_ms / parts;
+  for (int i = 1; i < parts; ++i) {
+    PreparedSegment part{part_of(prepared.segment, (i - 1) * part_ms, part_ms)};
+    if (i == 1) std::tie(part.stops_at_start, part.speed_ratio, part.max_start_rate) = std::tuple(prepared.stops_at_start, prepared.speed_ratio, prepared.max_start_rate);
+    part.accel_share = prepared.accel_share;
+    append_part(std::move(part));
+  }
+  if (parts == 1) return append_part(std::move(prepared));
+  PreparedSegment last{part_of(prepared.segment, (parts - 1) * part_ms, part_ms)};
+  last.accel_share = prepared.accel_share;
+  append_part(std::move(last));
+}
+
+void Lookahead::append_part(PreparedSegment prepared) {
   Interval next{std::move(prepared.segment), prepared.accel_share, {}, prepared.speed_ratio * prepared.speed_ratio};
   next.limits = rate_limits(next.segment, limits_, next.accel_share);
   next.start_bound = std::min(next.limits.max_rate2, prepared.max_start_rate * prepared.max_start_rate);
@@ -117,7 +153,7 @@ void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   const double ratio2 = intervals_.empty() ? 1 : intervals_.front().speed_ratio2;
   const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta * ratio2;
   const double next = interval.limits.largest_end(rate2_, std::min(next_beta, interval.limits.max_rate2));
-  const bool meets_beta = next == next_beta && rate2_ < interval.beta;
+  const bool meets_beta = next == next_beta && (rate2_ < interval.beta || interval.beta == interval.start_bound);
   const bool worthwhile = meets_beta && interval.limits.largest_end(rate2_, interval.limits.max_rate2) > kWorthwhileRise * next;
   const bool done = worthwhile && emit_with_switch(interval, rate2_, next, out);
   if (!done) out.push_back(timed(std::move(interval.segment), rate2_, next));

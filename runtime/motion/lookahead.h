@@ -47,6 +47,7 @@ class Lookahead : public TimeLaw {
   };
   int known() const { return static_cast<int>(intervals_.size()); }
   void append(PreparedSegment prepared);
+  void append_part(PreparedSegment prepared);
   void push(Interval interval);
   void split_last();
   void backward(double end_beta);
