@@ -108,8 +108,3 @@ TEST_CASE("spline: unequal times keep the acceleration continuous", "[programs][
   CHECK(last(bench, 1) == Approx(40.0).margin(1e-9));
   CHECK(last(bench, 2) == Approx(4.0).margin(1e-9));
 }
-
-TEST_CASE("spline: three different times are not simulated", "[programs][spline]") {
-  CHECK(Lines("spline100 spline100 spline100 X1\nX2").faults.empty());
-  CHECK(Lines("spline100 spline200 spline100 X1").faults.size() == 1);
-}
