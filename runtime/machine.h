@@ -58,6 +58,7 @@ struct FaultRecord {
   double time_ms = 0;
   int coord = -1, plc = -1;
   Fault fault;
+  int motor = -1;               // whose fault it is, where it is one motor's
 };
 
 /// What the owner wants to hear. Any may be empty.
@@ -69,6 +70,8 @@ struct MachineObservers {
   std::function<void(const OutputChange&)> output;
   std::function<void(const FaultRecord&)> fault;
   std::function<void(int coord, const motion::MotionCommand&)> motion_command;
+  /// Every source line that a motion or PLC program begins to execute. who: "&1 prog 5", "plc 2". Runs are slower with it.
+  std::function<void(double time_ms, const std::string& who, bytecode::SourceLine)> line;
   std::function<void(double time_ms)> progress;               // now and then while running
 };
 

@@ -53,7 +53,7 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {
     report.add(record);
-    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : "coordinate system " + std::to_string(record.coord);
+    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : record.coord < 0 ? "motor " + std::to_string(record.motor) : "coordinate system " + std::to_string(record.coord);
     std::fprintf(stderr, "%s: fault at %.6f s, %s: %s\n", machine->place(record.fault.source).c_str(), record.time_ms / 1000.0,
                  who.c_str(), record.fault.detail.c_str());
   };
@@ -130,6 +130,11 @@ int run(const RunOptions& options) {
     return typed ? typed : lines(file, line);
   };
   machine_options.observers = observers(options, report, place, console);
+  if (options.trace)
+    machine_options.observers.line = [&place, text_of = machine_options.source_text](double time_ms, const std::string& who, bytecode::SourceLine source) {
+      const std::string file = source.file >= 0 ? place->files()[static_cast<std::size_t>(source.file)] : std::string();
+      std::fprintf(stderr, "%12.6f s  %-12s %s: %s\n", time_ms / 1000.0, who.c_str(), place->place(source).c_str(), text_of(file, source.line).value_or("").c_str());
+    };
   Emitter emitter(options.emit);
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);

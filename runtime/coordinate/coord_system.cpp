@@ -61,11 +61,19 @@ std::string CoordSystem::define(const bytecode::AxisDefinition& definition, int 
   for (const auto& row : definitions_) motors_.push_back(row.motor);
   const bool null = d.kind == kinematics::MotorDefinition::Kind::kNull;
   m.coord = null ? -1 : number_;
+  m.shares_with = number_;
+  m.spindle = d.kind == kinematics::MotorDefinition::Kind::kSpindle ? static_cast<Motor::Spindle>(definition.spindle + 1) : Motor::Spindle::kNo;
   m.in_use = m.in_use || !null;
   return {};
 }
 
 void CoordSystem::fail(double time_ms, Fault fault) {
+  const bool ends_on_path = fault.kind == FaultKind::kSoftLimit && on_path_ && lookahead_ && !limit_fault_;
+  if (ends_on_path) stop_at_limit(time_ms, std::move(fault));
+  else fail_at_once(time_ms, std::move(fault));
+}
+
+void CoordSystem::fail_at_once(double time_ms, Fault fault) {
   abort(time_ms);
   machine_.elements.set(ElementId::kCoordErrorStatus, error_status(fault.kind), static_cast<unsigned>(number_));
   machine_.report_fault({time_ms, number_, -1, std::move(fault)});
@@ -73,11 +81,6 @@ void CoordSystem::fail(double time_ms, Fault fault) {
 
 bool CoordSystem::executes(const bytecode::Program* program) const {
   return program_active() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);
-}
-
-bytecode::SourceLine CoordSystem::executing_source(double time_ms) const {
-  if (on_path_) return pipeline_.executing_source(time_base_.path_at(time_ms));
-  return rapid_open_ ? rapid_.source : bytecode::SourceLine{};
 }
 
 void CoordSystem::observe(motion::StageObservers observers) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct MotorLimits {
   double inv_amax_ms2_mu = 0;
   double inv_dmax_ms2_mu = 0;
   double inv_jmax_ms3_mu = 0;
+  double min_position_mu = -std::numeric_limits<double>::infinity(), max_position_mu = std::numeric_limits<double>::infinity();  // lookahead only
 };
 
 enum class FineInterpolation : std::uint8_t { kThrough, kBspline };
@@ -84,6 +86,7 @@ struct PipelineConfig {
   RampRule ramp_rule = RampRule::kPower;
   bool lookahead = false;               // segmented only
   int lookahead_segments = 0;           // LHDistance
+  double history_ms = 0;                // programmed time behind the last sample that stays known, for retracing
   double servo_period_ms = 0.44274211;  // at which limits are counted where the path's velocity steps; 0: stop there
   double radius_error_limit_uu = 0;     // 0: off
   double min_arc_len = 0;               // semicircles; 0: 2^-20

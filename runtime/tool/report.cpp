@@ -36,6 +36,7 @@ ordered_json fault_json(const runtime::Machine& machine, const runtime::FaultRec
   put_source(j, machine, record.fault.source);
   if (record.coord >= 0) j["coord"] = record.coord;
   if (record.plc >= 0) j["plc"] = record.plc;
+  if (record.motor >= 0) j["motor"] = record.motor;
   j["time_s"] = record.time_ms / 1000.0;
   j["error_status"] = runtime::error_status(record.fault.kind);
   j["text"] = record.fault.detail;
