@@ -284,7 +284,11 @@ void Pipeline::take_timings(std::vector<MoveTiming>& out) {
   const std::size_t first = out.size();
   state_->timings.take(out);
   if (!state_->config.note_governing) return;
-  for (std::size_t i = first; i < out.size(); ++i) out[i].governed = state_->governing.take(out[i].id);
+  for (std::size_t i = first; i < out.size(); ++i) {
+    const bool has_own_time = out[i].rule == TimeRule::kOwnTime && !state_->lookahead;  // pvt: no limit acts
+    out[i].governed = state_->governing.take(out[i].id);
+    if (has_own_time) out[i].governed.clear();
+  }
 }
 void Pipeline::take_sync_times(std::vector<SyncTime>& out) { state_->timings.take_sync_times(out); }
 
