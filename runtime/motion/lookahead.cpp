@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace pmac::motion {
 namespace {
@@ -22,23 +21,38 @@ Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
   return part;
 }
 
-/// Into how many parts of equal time a segment is divided. None where its own acceleration is far from the limits: x is 1 there, or changes as
-/// on a straight line.
-int parts_of(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
-  constexpr double kFar = 0.1, kChange = 0.05;
-  constexpr int kMostParts = 16;
-  double accel = 0, change = 0, speed = 0;
+/// The limits may act in the segment: its own acceleration at full rate is not far from them, or a speed beyond. Elsewhere x is 1, or changes
+/// as on a straight line.
+bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
+  constexpr double kFar = 0.1;
   const double h = segment.duration_ms;
-  for (std::size_t m = 0; m < segment.motor.size(); ++m) {
+  for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
     const MotorCubic& q = segment.motor[m];
-    const double inv_accel = m < limits.size() ? limits[m].inv_amax_ms2_mu / accel_share : 0;
-    accel = std::max(accel, inv_accel * std::max(std::abs(q.acceleration(0)), std::abs(q.acceleration(h))));
-    const double begin = q.velocity(0), middle = q.velocity(h / 2), end = q.velocity(h);
+    const double accel = std::max(std::abs(q.acceleration(0)), std::abs(q.acceleration(h))), speed = limits[m].max_speed_mu_ms;
+    if (accel * limits[m].inv_amax_ms2_mu > kFar * accel_share) return true;
+    if (speed > 0 && std::max({std::abs(q.c1), std::abs(q.velocity(h / 2)), std::abs(q.velocity(h))}) > speed) return true;
+  }
+  return false;
+}
+
+/// How much velocities change over the part, in speeds of the fastest motor.
+double change_of_velocity(const Segment& segment, double from_ms, double to_ms) {
+  double change = 0, speed = 0;
+  for (const MotorCubic& q : segment.motor) {
+    const double begin = q.velocity(from_ms), middle = q.velocity((from_ms + to_ms) / 2), end = q.velocity(to_ms);
     change = std::max(change, std::max({begin, middle, end}) - std::min({begin, middle, end}));
     speed = std::max({speed, std::abs(begin), std::abs(middle), std::abs(end)});
   }
-  if (accel < kFar || speed == 0) return 1;
-  return std::clamp(static_cast<int>(std::ceil(change / (kChange * speed))), 1, kMostParts);
+  return speed > 0 ? change / speed : 0;
+}
+
+/// Ends of the parts that a stretch of the segment is halved into until velocities change little over each.
+void divide(const Segment& segment, double from_ms, double to_ms, int halvings, std::vector<double>& ends_ms) {
+  constexpr double kChange = 0.03;
+  if (halvings == 0 || change_of_velocity(segment, from_ms, to_ms) <= kChange) return ends_ms.push_back(to_ms);
+  const double middle_ms = (from_ms + to_ms) / 2;
+  divide(segment, from_ms, middle_ms, halvings - 1, ends_ms);
+  divide(segment, middle_ms, to_ms, halvings - 1, ends_ms);
 }
 
 /// The segment run through with x from x0 to x1; one of them is not zero.
@@ -86,18 +100,23 @@ void Lookahead::finish(std::vector<TimedSegment>& out) {
 
 /// In parts, where the velocity of the program changes much: x is linear over each.
 void Lookahead::append(PreparedSegment prepared) {
-  const int parts = parts_of(prepared.segment, limits_, prepared.accel_share);
-  const double part_ms = prepared.segment.duration_ms / parts;
-  for (int i = 1; i < parts; ++i) {
-    PreparedSegment part{part_of(prepared.segment, (i - 1) * part_ms, part_ms)};
-    if (i == 1) std::tie(part.stops_at_start, part.speed_ratio, part.max_start_rate) = std::tuple(prepared.stops_at_start, prepared.speed_ratio, prepared.max_start_rate);
+  constexpr int kHalvings = 6;
+  if (!may_be_limited(prepared.segment, limits_, prepared.accel_share)) return append_part(std::move(prepared));
+  part_ends_ms_.clear();
+  divide(prepared.segment, 0, prepared.segment.duration_ms, kHalvings, part_ends_ms_);
+  if (part_ends_ms_.size() == 1) return append_part(std::move(prepared));
+  double from_ms = 0;
+  for (const double to_ms : part_ends_ms_) {
+    PreparedSegment part{part_of(prepared.segment, from_ms, to_ms - from_ms)};
     part.accel_share = prepared.accel_share;
+    if (from_ms == 0) {
+      part.stops_at_start = prepared.stops_at_start;
+      part.speed_ratio = prepared.speed_ratio;
+      part.max_start_rate = prepared.max_start_rate;
+    }
     append_part(std::move(part));
+    from_ms = to_ms;
   }
-  if (parts == 1) return append_part(std::move(prepared));
-  PreparedSegment last{part_of(prepared.segment, (parts - 1) * part_ms, part_ms)};
-  last.accel_share = prepared.accel_share;
-  append_part(std::move(last));
 }
 
 void Lookahead::append_part(PreparedSegment prepared) {

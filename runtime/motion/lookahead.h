@@ -58,6 +58,7 @@ class Lookahead : public TimeLaw {
   double window_ms_, chunk_ms_;
   VelocitySteps steps_;
   std::vector<PreparedSegment> prepared_;
+  std::vector<double> part_ends_ms_;
   std::deque<Interval> intervals_;
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass
