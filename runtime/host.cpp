@@ -50,7 +50,7 @@ class MachineHost : public Host {
   void write_m(Thread& thread, int number, double value) override {
     PointerEntry& pointer = s_.pointers.at(number);
     switch (pointer.definition.kind) {
-      case PointerKind::kSelf: pointer.value = value; break;
+      case PointerKind::kSelf: pointer.value = pointer.definition.has_field ? read_bits(write_bits(0, pointer.definition, value), pointer.definition) : value; break;
       case PointerKind::kElement: write_field(thread, pointer, value); break;
       default:
         if (s_.io.write(pointer.definition, value)) log_output(thread, number, pointer);

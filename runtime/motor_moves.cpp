@@ -96,7 +96,8 @@ void pass_trigger(Machine::State& s, Motor& m) {
 void report(Machine::State& s, Motor& m) {
   m.jogging = false;
   if (s.options.observers.move)
-    s.options.observers.move({m.jog_mode, m.jog_source, -1, m.number, m.jog_start_ms, m.rest_since_ms, std::abs(m.position_mu - m.jog_start_mu)});
+    s.options.observers.move({m.jog_mode, m.jog_source, -1, m.number, m.jog_start_ms, m.rest_since_ms, std::abs(m.position_mu - m.jog_start_mu),
+                               {}, governed_by_itself(s, m)});
 }
 
 void arrive(Motor& m, double time_ms) {
@@ -199,6 +200,14 @@ void trigger_captured(Machine::State& s, Motor& m, double place_raw_mu) {
 
 void trigger_moved(Machine::State& s, Motor& m) {
   if (m.seeks_trigger()) find_trigger(s, m);
+}
+
+std::vector<motion::GoverningShare> governed_by_itself(const Machine::State& s, const Motor& m) {
+  if (!s.options.note_governing || !std::isfinite(m.profile.end_ms())) return {};
+  const double cruise_ms = m.profile.cruise_ms(), ramps_ms = m.profile.end_ms() - m.profile.start_ms() - cruise_ms;
+  motion::GoverningShare speed{motion::GoverningLimit::kJogSpeed, m.number, cruise_ms}, ramps{motion::GoverningLimit::kJogRamp, m.number, ramps_ms};
+  if (ramps_ms > cruise_ms) std::swap(speed, ramps);
+  return {speed, ramps};
 }
 
 double next_motor_event_ms(const Motor& m) {

@@ -37,6 +37,9 @@ void trigger_captured(Machine::State& s, Motor& m, double place_raw_mu);
 /// Its trigger lies elsewhere now.
 void trigger_moved(Machine::State& s, Motor& m);
 
+/// Time at the speed and in the ramps of the last profile, longest first; empty where nobody asks (MachineOptions::note_governing).
+std::vector<motion::GoverningShare> governed_by_itself(const Machine::State& s, const Motor& m);
+
 /// When service_motor() has something to do.
 double next_motor_event_ms(const Motor& m);
 /// A trigger that was passed, a profile that has ended.

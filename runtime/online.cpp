@@ -115,7 +115,8 @@ Flow program_verb(const Call& call, CoordSystem& coord, int number) {
   switch (call.verb) {
     case ControlVerb::kRun: call.refusal = coord.run(now); break;
     case ControlVerb::kResume: call.refusal = coord.resume(now); break;
-    case ControlVerb::kForward: call.refusal = coord.resume(now); break;
+    case ControlVerb::kForward: call.refusal = coord.forward_on_path(now); break;
+    case ControlVerb::kRetrace: call.refusal = coord.retrace(now); break;
     case ControlVerb::kHold: call.refusal = coord.hold(now); break;
     case ControlVerb::kQuickStop: call.refusal = coord.quick_stop(now); break;
     case ControlVerb::kPause:
@@ -144,15 +145,13 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kRun:
     case ControlVerb::kResume:
     case ControlVerb::kForward:
+    case ControlVerb::kRetrace:
     case ControlVerb::kHold:
     case ControlVerb::kQuickStop:
     case ControlVerb::kPause:
     case ControlVerb::kStep: return program_verb(call, coord, number);
     case ControlVerb::kTimeBase: call.refusal = coord.set_time_base(call.s.now_ms, call.argument(1) / 100); return Flow::kContinue;
     case ControlVerb::kReportTimeBase: call.s.answer(fmt::format("{}", coord.time_base().rate_at(call.s.now_ms) * 100)); return Flow::kContinue;
-    case ControlVerb::kRetrace:
-      call.refusal = "error #20: ILLEGAL CMD: retracing the path backwards (<) is not simulated; > and r go on forwards";
-      return Flow::kContinue;
     case ControlVerb::kPread:
     case ControlVerb::kVread:
     case ControlVerb::kDread:

@@ -1,6 +1,7 @@
 // Status elements: what a program reads of motors, coordinate systems and the clock at the present time. Source: status bits,
 // User's Manual p683-694; in-position, training material.
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/bytecode/element.h"
 #include "runtime/state.h"
@@ -73,16 +74,17 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
     case ElementId::kCoordAmpEna: return all_motors(s, c, ElementId::kMotorAmpEna);
     case ElementId::kCoordCsolve: return c.map().solvable();
     case ElementId::kCoordProgRunning: return c.program_running();
-    case ElementId::kCoordProgProceeding: return c.program_running() && !c.time_base().stands(s.now_ms);
+    case ElementId::kCoordProgProceeding: return c.program_running() && (!c.time_base().stands(s.now_ms) || c.path_rate(s.now_ms) != 0);
     case ElementId::kCoordProgActive: return c.program_active();
     case ElementId::kCoordFeedHold: return static_cast<double>(c.time_base().hold_state(s.now_ms));
-    case ElementId::kCoordTimeBase: return c.time_base().rate_at(s.now_ms) * s.period_ms();
+    case ElementId::kCoordTimeBase: return std::abs(c.path_rate(s.now_ms)) * s.period_ms();
     case ElementId::kCoordDesTimeBase: return c.time_base().override_rate() * s.period_ms();
     case ElementId::kCoordSegEnabled: return s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
     case ElementId::kCoordLookAheadActive:
       return c.lookahead_buffer > 0 && s.elements.get(ElementId::kCoordLHDistance, a.index[0]) > 1 &&
              s.elements.get(ElementId::kCoordSegMoveTime, a.index[0]) > 0;
     case ElementId::kCoordLookAheadStop: return c.quick_stopped();
+    case ElementId::kCoordLookAheadDir: return c.runs_backwards();
     case ElementId::kCoordCCMode: return c.modal.compensation_side;
     case ElementId::kCoordMoveMode: return static_cast<double>(c.modal.mode);
     case ElementId::kCoordPlusLimit: return any_motor(s, c, ElementId::kMotorPlusLimit);

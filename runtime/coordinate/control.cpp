@@ -156,8 +156,9 @@ std::string CoordSystem::resume(double time_ms) {
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kNone || hold == TimeBase::Hold::kResuming)
     return fmt::format("error #39: NOT READY TO RUN: the program of coordinate system {} is neither paused nor held", number_);
+  if (retracing()) return forward_on_path(time_ms);
   if (quick_stopped() && on_path_ && lookahead_) {
-    quick_stopped_ = false;
+    shaped_by_slew_ = quick_stopped_ = false;
     begin_shaping(Shaping::kFaster);
     return {};
   }
@@ -187,6 +188,7 @@ std::string CoordSystem::set_time_base(double time_ms, double rate) {
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordTimeBaseSlew, slope_per_ms); !refusal.empty()) return refusal;
   time_base_.set_override(time_ms, rate, slope_per_ms);
+  if (shaping_ != Shaping::kNone) shape_at_ms_ = machine_.tick_ms(machine_.tick + 1);
   clock_changed(time_ms);
   return {};
 }
@@ -196,6 +198,11 @@ std::string CoordSystem::hold(double time_ms) {
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordFeedHoldSlew, slope_per_ms); !refusal.empty()) return refusal;
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
+  if (retracing() && !quick_stopped_) {
+    shaped_by_slew_ = true;
+    begin_shaping(Shaping::kSlower);
+    return {};
+  }
   if (hold == TimeBase::Hold::kHeld || hold == TimeBase::Hold::kSlowing) return {};
   shaping_ = Shaping::kNone;
   shape_at_ms_ = kNever;
@@ -224,7 +231,7 @@ const TimeBase* CoordSystem::clock_for_motion(double time_ms) {
 void CoordSystem::abort(double time_ms) {
   std::vector<double> position(path_map_.motors.size()), velocity(path_map_.motors.size());
   if (on_path_) {
-    pipeline_.sample(std::max(time_base_.path_at(time_ms), sampled_to_ms_), 1.0, 1, position, velocity);
+    pipeline_.sample(path_position(time_ms), 1.0, 1, position, velocity);
     if (!pipeline_.end_sequence()) collect_timings();
   }
   report_unfinished(time_ms, false);
@@ -233,7 +240,7 @@ void CoordSystem::abort(double time_ms) {
     if (m.limit_stop != Motor::LimitStop::kNone) velocity[i] = 0;   // held at a software limit
     if (m.limit_stop != Motor::LimitStop::kNone) position[i] = m.position_mu;
     m.position_mu = position[i];
-    m.velocity_mu_ms = velocity[i] * time_base_.rate_at(time_ms);
+    m.velocity_mu_ms = velocity[i] * path_rate(time_ms);
   }
   on_path_ = false;
   for (Motor& m : machine_.motors)
@@ -252,6 +259,7 @@ void CoordSystem::drop_program() {
   executed_.clear();
   end_compensation();
   spline_.cancel();
+  forget_retrace();
   pvt_velocity_uu_ms_.fill(0);
   block_ = {};
   home_motors_.clear();

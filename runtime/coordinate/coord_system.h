@@ -84,6 +84,12 @@ class CoordSystem {
   /// Inside lookahead as fast as the motors' limits allow, otherwise a feed hold.
   std::string quick_stop(double time_ms);
   bool quick_stopped() const { return quick_stopped_ || shaping_ == Shaping::kSlower; }
+  /// Runs the stored path backwards, until a quick stop, forward(), or the end of what is stored.
+  std::string retrace(double time_ms);
+  std::string forward_on_path(double time_ms);
+  /// The path behind the place that the program has come to is run through, backwards or forwards.
+  bool retracing() const { return back_ms_ < 0 || back_rate_ != 0 || shaping_ == Shaping::kBack; }
+  bool runs_backwards() const { return back_rate_ < 0; }
   /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
   std::string set_time_base(double time_ms, double rate);
   const TimeBase& time_base() const { return time_base_; }
@@ -99,6 +105,8 @@ class CoordSystem {
   bool program_active() const { return phase_ != Phase::kIdle; }
   /// Executing, and going on by itself: not held, not at 0 %.
   bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
+  /// Rate at which the path is run through, below 0 backwards; 1 is 100 %.
+  double path_rate(double time_ms) const { return time_base_.rate_at(time_ms) + back_rate_; }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
   Runner& runner() { return runner_; }
@@ -158,7 +166,7 @@ class CoordSystem {
   const motion::StageObservers& observers() const { return observers_; }
 
  private:
-  enum class Shaping { kNone, kSlower, kFaster };
+  enum class Shaping { kNone, kSlower, kFaster, kBack };
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
   enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd, kLimit };
 
@@ -182,8 +190,17 @@ class CoordSystem {
   void begin_shaping(Shaping shaping);
   bool keeps_limits(double path_ms, double step_ms);
   double step_toward(double path_ms, double last_ms, double wanted_ms);
+  double step_by_slew(double last_ms, double wanted_ms) const;
   void shape_rate(double time_ms);
+  void run_step(double time_ms, double step_ms);
   void end_shaping(double time_ms);
+  double wanted_step_ms(double path_ms) const;
+
+  // retrace.cpp
+  double path_position(double time_ms) const;
+  void forget_retrace();
+  double history_wanted_ms() const;
+  double stored_ms() const;
 
   // program.cpp
   void calculate(double time_ms);
@@ -224,6 +241,7 @@ class CoordSystem {
   std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
                                         std::vector<motion::JogParameters>& parameters) const;
   void report_rapid(double time_ms);
+  std::vector<motion::GoverningShare> rapid_governed() const;
   void start_homing(double time_ms);
   void motors_arrived(double time_ms);
   void collect_timings();
@@ -278,13 +296,17 @@ class CoordSystem {
   Shaping shaping_ = Shaping::kNone;      // quick stop, or going on after it
   bool quick_stopped_ = false;
   double shape_at_ms_ = kNever;           // next servo tick of it
+  double before_path_ms_ = 0;             // path position at the last shaped tick
   std::vector<double> before_mu_, here_mu_, there_mu_;   // [path motor] at the tick before, at this one, at one that is tried
+  bool shaped_by_slew_ = false;           // feed hold while retracing, and retracing without lookahead
+  double back_ms_ = 0, back_from_ms_ = 0, back_rate_ = 0;  // path position less the clock's, at a time; its rate
+  double retrace_to_ms_ = 0;              // path position at which retracing begins to stop
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
   motion::StageObservers observers_;
   bool on_path_ = false, lookahead_ = false;
-  double sampled_to_ms_ = 0, sequence_start_ms_ = 0;
+  double sequence_start_ms_ = 0;
   double calculated_at_ms_ = -kNever;  // last calculation pass
   int moves_without_time_ = 0;
   ProgramFrame frame_;

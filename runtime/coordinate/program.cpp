@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motion/governing.h"
 #include "runtime/motor_moves.h"
 #include "runtime/servo/servo_cycle.h"
 #include "runtime/state.h"
@@ -32,7 +33,8 @@ void CoordSystem::ensure_sequence(double time_ms) {
   pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
   before_mu_.clear();
-  sampled_to_ms_ = sequence_start_ms_ = path_ms;
+  forget_retrace();
+  sequence_start_ms_ = path_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].follow_path();
 }
 
@@ -44,6 +46,7 @@ motion::PipelineConfig CoordSystem::config() {
   c.servo_period_ms = machine_.period_ms();
   c.fine = machine_.options.fine;
   c.ramp_rule = machine_.options.ramp_rule;
+  c.note_governing = machine_.options.note_governing;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
   c.lookahead = c.segment_time_ms > 0 && c.lookahead_segments > 1 && lookahead_buffer > 0;
   c.radius_error_limit_uu = e.get(ElementId::kCoordRadiusErrorLimit, cs);
@@ -53,6 +56,7 @@ motion::PipelineConfig CoordSystem::config() {
   c.corner_blend_bp = e.get(ElementId::kCoordCornerBlendBp, cs);
   c.corner_dwell_bp = e.get(ElementId::kCoordCornerDwellBp, cs);
   c.added_dwell_ms = e.get(ElementId::kCoordAddedDwellTime, cs);
+  c.history_ms = c.segment_time_ms > 0 ? history_wanted_ms() : 0;
   c.map = motor_map();
   for (int motor : c.map.motors) {
     const auto n = static_cast<unsigned>(motor);
@@ -287,7 +291,6 @@ void CoordSystem::sample(double start_ms, double period_ms, int count, std::span
 }
 
 void CoordSystem::follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu) {
-  sampled_to_ms_ = time_base_.path_at(start_ms + (kept - 1) * period_ms);
   for (int motor : path_map_.motors) {
     Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
     const auto row = static_cast<std::size_t>(std::find(used.begin(), used.end(), motor) - used.begin());
@@ -298,11 +301,11 @@ void CoordSystem::follow_samples(double start_ms, double period_ms, int kept, in
   }
   if (kept == count) return;
   sample_run_.resize(path_map_.motors.size());
-  pipeline_.sample(sampled_to_ms_, 1.0, 1, sample_run_, {});  // the pipeline stands there again
+  pipeline_.sample(path_position(start_ms + (kept - 1) * period_ms), 1.0, 1, sample_run_, {});  // the pipeline stands there again
 }
 
 bytecode::SourceLine CoordSystem::executing_source(double time_ms) const {
-  const bytecode::SourceLine on_path = on_path_ ? pipeline_.executing_source(time_base_.path_at(time_ms)) : bytecode::SourceLine{};
+  const bytecode::SourceLine on_path = on_path_ ? pipeline_.executing_source(path_position(time_ms)) : bytecode::SourceLine{};
   if (on_path.line > 0) return on_path;
   if (phase_ == Phase::kRapid) return rapid_.source;
   return phase_ == Phase::kDwelling || phase_ == Phase::kHoming ? item_source_ : runner_.thread.source();
@@ -313,11 +316,11 @@ void CoordSystem::sample_by_clock(double start_ms, double period_ms, int count, 
   const std::size_t motors = path_map_.motors.size();
   for (int done = 0; done < count;) {
     const double first_ms = start_ms + done * period_ms;
-    const double steady_ms = time_base_.steady_until_ms(first_ms);
+    const double steady_ms = retracing() ? first_ms : time_base_.steady_until_ms(first_ms);
     int n = 1;
     while (done + n < count && first_ms + n * period_ms <= steady_ms) ++n;
     sample_run_.resize(motors * static_cast<std::size_t>(n));
-    pipeline_.sample(time_base_.path_at(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
+    pipeline_.sample(path_position(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
     for (std::size_t m = 0; m < motors; ++m)
       std::copy_n(sample_run_.begin() + static_cast<std::ptrdiff_t>(m) * n, n,
                   position_mu.begin() + static_cast<std::ptrdiff_t>(m) * count + done);
@@ -352,21 +355,24 @@ void CoordSystem::record_executed(double time_ms) {
     const auto& [timing, mode, source] = executed_.front();
     const double end_ms = time_base_.time_at(timing.end_ms);
     if (end_ms > time_ms) return;
-    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu});
+    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu, motion::time_rule_name(timing.rule),
+            timing.governed});
   }
 }
 
 void CoordSystem::report_unfinished(double time_ms, bool go_on) {
   record_executed(time_ms);
-  const auto report = [&](std::string_view mode, bytecode::SourceLine source, double start_ms, double end_ms, double length) {
-    const bool known = go_on && end_ms < kNever;
-    if (start_ms < time_ms || known) record({mode, source, number_, -1, start_ms, known ? end_ms : time_ms, length});
+  const auto report = [&](MoveRecord move) {
+    const bool known = go_on && move.end_ms < kNever;
+    if (!known) move.end_ms = time_ms;
+    if (move.start_ms < time_ms || known) record(move);
   };
   for (; !executed_.empty(); executed_.pop_front()) {
     const auto& [timing, mode, source] = executed_.front();
-    report(mode, source, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu);
+    report({mode, source, number_, -1, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu,
+            motion::time_rule_name(timing.rule), timing.governed});
   }
-  if (rapid_open_) report("rapid", rapid_.source, rapid_start_ms_, motors_end_ms(), rapid_length_uu_);
+  if (rapid_open_) report({"rapid", rapid_.source, number_, -1, rapid_start_ms_, motors_end_ms(), rapid_length_uu_});
   rapid_open_ = false;
 }
 

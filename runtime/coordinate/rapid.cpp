@@ -95,8 +95,18 @@ std::optional<Fault> CoordSystem::move_rapid(double time_ms, const RapidMove& mo
   return std::nullopt;
 }
 
+/// The motor that arrives last decides.
+std::vector<motion::GoverningShare> CoordSystem::rapid_governed() const {
+  const Motor* last = nullptr;
+  for (int motor : motors_) {
+    const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    if (m.coord == number_ && (!last || m.profile.end_ms() > last->profile.end_ms())) last = &m;
+  }
+  return last ? governed_by_itself(machine_, *last) : std::vector<motion::GoverningShare>{};
+}
+
 void CoordSystem::report_rapid(double time_ms) {
-  if (rapid_open_) record({"rapid", rapid_.source, number_, -1, rapid_start_ms_, time_ms, rapid_length_uu_});
+  if (rapid_open_) record({"rapid", rapid_.source, number_, -1, rapid_start_ms_, time_ms, rapid_length_uu_, {}, rapid_governed()});
   rapid_open_ = false;
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/motion/governing.h"
 #include "runtime/motion/lookahead.h"
 #include "runtime/motion/planner.h"
 #include "runtime/motion/position_limits.h"
@@ -65,6 +66,7 @@ struct Pipeline::State {
   std::optional<Lookahead> lookahead;
   Timeline timeline;
   Timings timings;
+  Governing governing;                  // where note_governing asks for it
   StageObservers observers;
   std::optional<Fault> fault;           // of a later stage: nothing more is produced until reset()
   double earliest_ms = 0;               // start of the next sequence
@@ -183,6 +185,7 @@ void Pipeline::State::deliver() {
   for (TimedSegment& segment : timed) {
     if (lookahead) segment.start_ms = std::max(timeline.end_ms(), sequence_ms);
     if (observers.timed_segment) observers.timed_segment(segment);
+    if (config.note_governing) governing.cover(segment);
     timings.cover(segment);
     timeline.push(std::move(segment));
   }
@@ -201,6 +204,9 @@ void Pipeline::reset(const PipelineConfig& config, const AxisVector& start_uu, d
   state_->config = config;
   state_->build_stages();
   state_->timings.reset(state_->segmented());
+  state_->timeline.keep_history(config.history_ms);
+  const bool limits_act = !state_->segmented() || state_->lookahead;
+  if (config.note_governing) state_->governing.reset(limits_act ? config.limits : std::vector<MotorLimits>{}, config.map.motors);
   state_->timeline.reset(std::vector<double>(state_->kinematics.count()), start_time_ms);
   state_->earliest_ms = start_time_ms;
   state_->fault = state_->start_at(start_uu, {});
@@ -264,11 +270,20 @@ void Pipeline::sample(double start_ms, double period_ms, int count, std::span<do
 
 void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
 
+double Pipeline::oldest_ms() const { return state_->timeline.oldest_ms(); }
+
+double Pipeline::history_start_ms(double time_ms, double amount_ms) const { return state_->timeline.history_start_ms(time_ms, amount_ms); }
+
 SourceLine Pipeline::executing_source(double time_ms) const { return state_->timeline.source_at(time_ms); }
 
 const AxisVector& Pipeline::calculated_position() const { return state_->planner.position(); }
 
-void Pipeline::take_timings(std::vector<MoveTiming>& out) { state_->timings.take(out); }
+void Pipeline::take_timings(std::vector<MoveTiming>& out) {
+  const std::size_t first = out.size();
+  state_->timings.take(out);
+  if (!state_->config.note_governing) return;
+  for (std::size_t i = first; i < out.size(); ++i) out[i].governed = state_->governing.take(out[i].id);
+}
 void Pipeline::take_sync_times(std::vector<SyncTime>& out) { state_->timings.take_sync_times(out); }
 
 }  // namespace pmac::motion
