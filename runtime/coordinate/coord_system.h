@@ -227,6 +227,8 @@ class CoordSystem {
   std::optional<Fault> add_spline_moves();
   std::optional<Fault> finish_spline();
   std::optional<Fault> pvt_has_ended(bytecode::SourceLine source) const;
+  bool pvt_goes_on() const;
+  bool pauses_here() const { return (pause_at_rest_ || (stepping_ && !step_block_)) && !pvt_goes_on(); }
   std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
@@ -288,6 +290,7 @@ class CoordSystem {
   std::optional<Fault> limit_fault_;  // stopped, or stopping, on the path at a software limit: only abort ends it
   bool stepping_ = false;           // pauses after one item
   bool step_block_ = false;         // between bstart and bstop
+  bool pause_at_rest_ = false;      // pauses after the next pvt move that ends at rest
   std::vector<double> paused_mu_;   // [motors_]
   TimeBase time_base_;
   Shaping shaping_ = Shaping::kNone;      // quick stop, or going on after it

@@ -220,7 +220,9 @@ Ramp ramp_within_limits(const RampSetting& setting, double speed_change_uu_ms, c
   return ramp;
 }
 
-Ramp start_ramp(const Move& move, const PipelineConfig& config) { return move.pvt ? Ramp{} : own_ramp(move, move.time_ms, false, config); }
+Ramp start_ramp(const Move& move, const PipelineConfig& config) {
+  return move.pvt ? Ramp{} : own_ramp(move, move.time_ms, false, config);
+}
 
 AxisVector end_velocity(const Move& move, double u) {
   AxisVector velocity = derivative(*move.curve, u);
