@@ -13,6 +13,8 @@ constexpr double kAccel = 0.9995, kJerk = 0.997;
 constexpr double kBrake = 0.999;
 /// It lets go where that takes this part of the jerk limit.
 constexpr double kWholeRelease = 0.9;
+/// And passes a place at this part of the speed that is allowed there.
+constexpr double kBelow = 1 - 1e-4;
 constexpr double kRounding = 1e-9;
 constexpr int kBisections = 44, kHalvings = 12, kMostSteps = 20'000, kMostDips = 16;
 
@@ -104,7 +106,8 @@ bool JerkPlan::ranges(const PathState& state, Within within, double& accel_low, 
     jerk.add((cell.curvature_rate[m] * v * v * v + 3 * k * v * state.accel_mu_ms2) * inv_jerk, t * inv_jerk, kJerk);
   }
   const bool each = within == Within::kEach;
-  const bool any = each ? accel.low <= accel.high && jerk.low <= jerk.high : accel.together(kAccel) && jerk.together(kJerk);
+  if (!each && !(accel.together(kAccel) && jerk.together(kJerk))) return false;
+  const bool any = accel.low <= accel.high && jerk.low <= jerk.high;
   accel_low = accel.low;
   accel_high = accel.high;
   jerk_low = jerk.low;
@@ -162,18 +165,46 @@ bool JerkPlan::brake_to(PathState& state, double speed_mu_ms, Within within, std
   return false;
 }
 
-/// A stop from the state: hard braking, or where a dip of the speed is in the way, first down to the dip's speed.
+/// Goes on at the speed it has up to a place.
+bool JerkPlan::coast_to(PathState& state, double to_mu, std::vector<JerkStep>& steps) {
+  for (int count = 0; state.at.at_mu < to_mu; ++count) {
+    if (count == kMostSteps || state.speed_mu_ms <= 0 || !advance(state, {step_ms_, 0})) return false;
+    steps.push_back({step_ms_, 0});
+  }
+  return true;
+}
+
+/// Past a trouble, at the speed that is allowed there and a little further.
+bool JerkPlan::pass(PathState& state, const Trouble& trouble, Within within, std::vector<JerkStep>& steps) {
+  const std::size_t before = steps.size();
+  double speed = std::min(state.speed_mu_ms, trouble.max_speed_mu_ms * kBelow);
+  for (int i = 0; i < kMostDips && speed > 0; ++i) {
+    PathState at = state;
+    const bool slow = speed < state.speed_mu_ms ? brake_to(at, speed, within, steps) : at.accel_mu_ms2 == 0;
+    if (slow && coast_to(at, trouble.at_mu, steps)) {
+      state = at;
+      return true;
+    }
+    steps.resize(before);
+    if (!slow || !(trouble_.max_speed_mu_ms < speed)) return false;
+    speed = trouble_.max_speed_mu_ms * kBelow;
+  }
+  return false;
+}
+
+/// A stop from the state: hard braking; where something is in the way, first down to the speed that is allowed there, past it, and on from there.
 bool JerkPlan::stop_within(const PathState& state, Within within, std::vector<JerkStep>& steps) {
   PathState at = state;
   steps.clear();
-  if (brake_to(at, 0, within, steps)) return true;
-  const Trouble first = trouble_;
-  for (int i = 0; i < kMostDips && !trouble_.at_end; ++i) {
-    const double dip = trouble_.max_speed_mu_ms * (1 - 1e-6);
-    if (!(dip > 0 && dip < state.speed_mu_ms)) break;
-    at = state;
-    steps.clear();
-    if (brake_to(at, dip, within, steps) && brake_to(at, 0, within, steps)) return true;
+  Trouble first;
+  for (int i = 0; i < kMostDips; ++i) {
+    PathState stopping = at;
+    const std::size_t before = steps.size();
+    if (brake_to(stopping, 0, within, steps)) return true;
+    steps.resize(before);
+    const Trouble trouble = trouble_;
+    if (i == 0) first = trouble;
+    if (trouble.at_end || !pass(at, trouble, within, steps)) break;
   }
   trouble_ = first;
   return false;

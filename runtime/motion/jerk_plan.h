@@ -47,6 +47,8 @@ class JerkPlan {
   enum class Within { kEach, kTogether };
   bool ranges(const PathState& state, Within within, double& accel_low, double& accel_high, double& jerk_low, double& jerk_high) const;
   bool brake_to(PathState& state, double speed_mu_ms, Within within, std::vector<JerkStep>& steps);
+  bool coast_to(PathState& state, double to_mu, std::vector<JerkStep>& steps);
+  bool pass(PathState& state, const Trouble& trouble, Within within, std::vector<JerkStep>& steps);
   bool stop_within(const PathState& state, Within within, std::vector<JerkStep>& steps);
   bool stop_from(const PathState& state, std::vector<JerkStep>& steps);
   bool try_step(const PathState& state, const JerkStep& step);
