@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 #include <random>
 #include <stdexcept>
+
+#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -56,6 +59,25 @@ std::vector<AxisRange> ranges_from(const std::vector<std::string>& options, int 
   return ranges;
 }
 
+/// How far it is, on a terminal.
+class Progress {
+ public:
+  explicit Progress(bool shown) : shown_(shown) {}
+  void show(int done, int all) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!shown_ || now - last_ < std::chrono::milliseconds(200)) return;
+    last_ = now;
+    std::fprintf(stderr, "\r%d of %d poses ", done, all);
+  }
+  void clear() const {
+    if (shown_) std::fprintf(stderr, "\r                              \r");
+  }
+
+ private:
+  bool shown_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 /// One coordinate system under check.
 class Check {
  public:
@@ -70,13 +92,19 @@ class Check {
     high_mu_.fill(-1e300);
   }
 
-  KinCheckResult run() {
+  KinCheckResult run(Progress& progress) {
     result_.ranges = ranges_from(options_.ranges, result_.coord);
     result_.by_motors = result_.ranges.empty();
-    if (result_.by_motors) poses_by_motors();
-    else poses_in_ranges();
-    for (const AxisVector& pose : poses_) check_error(pose);
-    for (const AxisVector& pose : solved_) check_condition(pose);
+    if (result_.by_motors) read_motor_ranges();
+    else refuse_unknown_ranges();
+    for (int i = 0; i < options_.samples; ++i) {
+      progress.show(i, options_.samples);
+      if (const auto pose = result_.by_motors ? pose_by_motors() : std::optional(pose_in_ranges())) check_error(*pose);
+    }
+    for (int i = 0; i < result_.solved; ++i) {
+      progress.show(i, result_.solved);
+      check_condition(solved_pose(i));
+    }
     improve_worst_condition();
     sort_reasons();
     return std::move(result_);
@@ -91,55 +119,66 @@ class Check {
     return values;
   }
 
-  void poses_in_ranges() {
+  void refuse_unknown_ranges() {
     MotorVector home{};
     AxisVector ignored{};
     (void)machine_.axes_from_motors(result_.coord, home, ignored);  // tells the machine the axes of the routine
+    const std::uint32_t known = machine_.axes_of(result_.coord);
+    std::uint32_t ranged = 0;
     for (const AxisRange& range : result_.ranges) {
-      const std::uint32_t known = machine_.axes_of(result_.coord);
+      ranged |= 1u << range.axis;
       if (known != 0 && !(known >> range.axis & 1u))
         throw Refused(fmt::format("--kin-range: axis {} is no axis of coordinate system {}", bytecode::axis_name(range.axis), result_.coord));
     }
-    for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
-      const bool ranged = std::any_of(result_.ranges.begin(), result_.ranges.end(), [&](const AxisRange& r) { return r.axis == axis; });
-      if ((machine_.axes_of(result_.coord) >> axis & 1u) && !ranged)
+    for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+      if (known >> axis & ~ranged >> axis & 1u)
         throw Refused(fmt::format("coordinate system {}: give a --kin-range for axis {} too", result_.coord, bytecode::axis_name(axis)));
-    }
-    for (int i = 0; i < options_.samples; ++i) {
-      AxisVector pose{};
-      for (const AxisRange& range : result_.ranges) pose[static_cast<std::size_t>(range.axis)] = uniform(range.low_uu, range.high_uu);
-      poses_.push_back(pose);
-    }
   }
 
-  /// The forward map of random motor positions; their ranges are those that the poses cover.
-  void poses_by_motors() {
-    std::vector<std::pair<double, double>> limits;
+  AxisVector pose_in_ranges() {
+    AxisVector pose{};
+    for (const AxisRange& range : result_.ranges) pose[static_cast<std::size_t>(range.axis)] = uniform(range.low_uu, range.high_uu);
+    return pose;
+  }
+
+  void read_motor_ranges() {
     for (const int motor : motors_) {
       const auto limit = machine_.motor_range_mu(motor);
       if (!limit)
         throw Refused(fmt::format("coordinate system {}: nothing says where to look; give --kin-range AXIS=LOW:HIGH, or set Motor[{}].MinPos and MaxPos", result_.coord, motor));
-      limits.push_back(*limit);
+      motor_ranges_mu_.push_back(*limit);
     }
-    std::uint32_t axes = 0;
-    for (int i = 0; i < options_.samples; ++i) {
-      MotorVector motor_mu{};
-      for (std::size_t m = 0; m < motors_.size(); ++m) motor_mu[static_cast<std::size_t>(motors_[m])] = uniform(limits[m].first, limits[m].second);
-      AxisVector pose{};
-      std::string why;
-      if (machine_.axes_from_motors(result_.coord, motor_mu, pose, &why)) poses_.push_back(pose);
-      else add_out_of_reach("forward: " + why, nullptr);
-      axes = machine_.axes_of(result_.coord);
+  }
+
+  /// The forward map of random motor positions; the ranges are those that the poses cover.
+  std::optional<AxisVector> pose_by_motors() {
+    MotorVector motor_mu{};
+    for (std::size_t m = 0; m < motors_.size(); ++m) motor_mu[static_cast<std::size_t>(motors_[m])] = uniform(motor_ranges_mu_[m].first, motor_ranges_mu_[m].second);
+    AxisVector pose{};
+    std::string why;
+    if (!machine_.axes_from_motors(result_.coord, motor_mu, pose, &why)) {
+      add_out_of_reach("forward: " + why, nullptr);
+      return std::nullopt;
     }
-    for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
-      if (!(axes >> axis & 1u)) continue;
-      AxisRange range{axis, 1e300, -1e300};
-      for (const AxisVector& pose : poses_) {
-        range.low_uu = std::min(range.low_uu, pose[static_cast<std::size_t>(axis)]);
-        range.high_uu = std::max(range.high_uu, pose[static_cast<std::size_t>(axis)]);
-      }
-      if (range.low_uu <= range.high_uu) result_.ranges.push_back(range);
+    if (result_.ranges.empty())
+      for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+        if (machine_.axes_of(result_.coord) >> axis & 1u) result_.ranges.push_back({axis, 1e300, -1e300});
+    widen(result_.ranges, pose);
+    return pose;
+  }
+
+  static void widen(std::vector<AxisRange>& box, const AxisVector& pose) {
+    for (AxisRange& side : box) {
+      side.low_uu = std::min(side.low_uu, pose[static_cast<std::size_t>(side.axis)]);
+      side.high_uu = std::max(side.high_uu, pose[static_cast<std::size_t>(side.axis)]);
     }
+  }
+
+  AxisVector solved_pose(int i) const {
+    AxisVector pose{};
+    const std::size_t width = result_.ranges.size();
+    for (std::size_t a = 0; a < width; ++a) pose[static_cast<std::size_t>(result_.ranges[a].axis)] = solved_[static_cast<std::size_t>(i) * width + a];
+    return pose;
   }
 
   void add_out_of_reach(const std::string& reason, const AxisVector* pose) {
@@ -153,10 +192,7 @@ class Check {
       for (const AxisRange& range : result_.ranges) group->box.push_back({range.axis, 1e300, -1e300});
       group->first_uu = values(*pose);
     }
-    for (AxisRange& side : group->box) {
-      side.low_uu = std::min(side.low_uu, (*pose)[static_cast<std::size_t>(side.axis)]);
-      side.high_uu = std::max(side.high_uu, (*pose)[static_cast<std::size_t>(side.axis)]);
-    }
+    widen(group->box, *pose);
   }
 
   void check_error(const AxisVector& pose) {
@@ -169,7 +205,8 @@ class Check {
     std::string why;
     if (!machine_.axes_from_motors(result_.coord, motor_mu, back, &why)) return add_out_of_reach("forward of the inverse: " + why, &pose);
     ++result_.solved;
-    solved_.push_back(pose);
+    const std::vector<double> row = values(pose);
+    solved_.insert(solved_.end(), row.begin(), row.end());
     for (const int motor : motors_) {
       const auto m = static_cast<std::size_t>(motor);
       low_mu_[m] = std::min(low_mu_[m], motor_mu[m]);
@@ -255,7 +292,8 @@ class Check {
   std::mt19937_64 random_;
   KinCheckResult result_;
   std::vector<int> motors_;
-  std::vector<AxisVector> poses_, solved_;
+  std::vector<std::pair<double, double>> motor_ranges_mu_;
+  std::vector<double> solved_;          // rows of values()
   AxisVector worst_pose_{};
   MotorVector low_mu_{}, high_mu_{};   // covered by the solutions
 };
@@ -277,7 +315,9 @@ int check_kinematics(const RunOptions& options, runtime::Machine& machine) {
   }
   std::vector<KinCheckResult> results;
   try {
-    for (const int coord : coords) results.push_back(Check(machine, coord, options.kin_check).run());
+    Progress progress(!options.quiet && isatty(STDERR_FILENO) != 0);
+    for (const int coord : coords) results.push_back(Check(machine, coord, options.kin_check).run(progress));
+    progress.clear();
   } catch (const Refused& refused) {
     std::fprintf(stderr, "pmac-run: %s\n", refused.what());
     return kExitUsage;

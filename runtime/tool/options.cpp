@@ -32,7 +32,7 @@ void add_kinematics_options(CLI::App& app, RunOptions& o) {
   KinCheckOptions& check = o.kin_check;
   app.add_flag("--kin-check", check.enabled, "check kinematics instead of running: forward(inverse(pose)), what is out of reach, singular poses");
   app.add_option("--kin-range", check.ranges, "poses to check")->type_name("[&N.]AXIS=LOW:HIGH")->allow_extra_args(false);
-  app.add_option("--kin-samples", check.samples, "number of poses")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  app.add_option("--kin-samples", check.samples, "number of poses")->check(CLI::Range(1, 1'000'000))->capture_default_str();
   app.add_option("--kin-seed", check.seed, "seed of the random poses")->capture_default_str();
   app.add_option("--kin-tolerance", check.tolerance_uu, "allowed error in axis units")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--kin-condition", check.condition, "condition number above which a pose counts as singular")->check(CLI::Range(1.0, 1e15))->capture_default_str();

@@ -117,6 +117,27 @@ TEST_CASE("kinematics: segmented pvt follows the axes' cubics", "[programs]") {
   CHECK(worst < 1e-4);
 }
 
+TEST_CASE("kinematics: a spline without segmentation passes the weighted points with the motors' velocities", "[programs]") {
+  ProgramBench bench("spline.pmc", with_program("two_link", "rapid X500 Y0;\ndwell 10;\nspline 200;\nX480 Y60;\nX440 Y120;\nX400 Y150;\ndwell 0;"));
+  bench.run("&1 b1r");
+  REQUIRE(bench.faults.empty());
+  const auto end = joints_of(400, 150, 0, 0);
+  CHECK(bench.motor(1).final_mu == Approx(end[0].position).margin(1e-9));
+  CHECK(bench.motor(2).final_mu == Approx(end[1].position).margin(1e-9));
+  // At 400 ms: (1, 4, 1)/6 of the start, the first and the second point, and half their difference over 200 ms.
+  const auto knot = joints_of((500 + 4 * 480 + 440) / 6.0, (0 + 4 * 60 + 120) / 6.0, (440 - 500) / 400.0, 120 / 400.0);
+  double start_ms = -1;
+  for (const auto& move : bench.moves)
+    if (start_ms < 0 && move.mode == "spline") start_ms = move.start_ms;
+  const double period_ms = bench.time_ms[1] - bench.time_ms[0];
+  const auto k = static_cast<std::size_t>((start_ms + 400) / period_ms);
+  const double before_ms = start_ms + 400 - bench.time_ms[k];  // within a servo cycle
+  for (std::size_t m = 0; m < 2; ++m) {
+    CHECK(bench.motor_mu[k][m + 1] + before_ms * knot[m].velocity == Approx(knot[m].position).margin(1e-5));
+    CHECK((bench.motor_mu[k + 1][m + 1] - bench.motor_mu[k][m + 1]) / period_ms == Approx(knot[m].velocity).margin(1e-4));
+  }
+}
+
 TEST_CASE("kinematics: a routine without velocities refuses pvt without segmentation", "[programs]") {
   const std::string detail = fault_of(with_program("corexy", "pvt 100;\nX10:5 Y0;\nX20:0 Y0;", "Coord[1].SegMoveTime = 0"));
   CHECK(detail.find("KinVelMotor1 is not set") != std::string::npos);
