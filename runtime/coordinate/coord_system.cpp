@@ -61,11 +61,19 @@ std::string CoordSystem::define(const bytecode::AxisDefinition& definition, int 
   for (const auto& row : definitions_) motors_.push_back(row.motor);
   const bool null = d.kind == kinematics::MotorDefinition::Kind::kNull;
   m.coord = null ? -1 : number_;
+  m.shares_with = number_;
+  m.spindle = d.kind == kinematics::MotorDefinition::Kind::kSpindle ? static_cast<Motor::Spindle>(definition.spindle + 1) : Motor::Spindle::kNo;
   m.in_use = m.in_use || !null;
   return {};
 }
 
 void CoordSystem::fail(double time_ms, Fault fault) {
+  const bool ends_on_path = fault.kind == FaultKind::kSoftLimit && on_path_ && lookahead_ && !limit_fault_;
+  if (ends_on_path) stop_at_limit(time_ms, std::move(fault));
+  else fail_at_once(time_ms, std::move(fault));
+}
+
+void CoordSystem::fail_at_once(double time_ms, Fault fault) {
   abort(time_ms);
   const bool of_routine = fault.kind == FaultKind::kInverseKinematics && kinematics_.error_status != 0;
   const double status = of_routine ? kinematics_.error_status : error_status(fault.kind);
