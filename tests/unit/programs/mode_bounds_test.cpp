@@ -84,7 +84,7 @@ TEST_CASE("pvt: a circle of cubics is left by V^4 T^4 / (384 R^3)", "[programs][
 
 TEST_CASE("fine interpolation: arcs are left by V^4 tau^4 / (384 R^3) through the points, by V^2 tau^2 / (6 R) beside them", "[programs][fine]") {
   const double R = 10, tau = 20, V = 0.1;
-  const std::string lines = "F100 ta20 ts0 X0.5\ncircle2 X0.5 Y0 I0 J10\nX1";
+  const std::string lines = "F100 ta20 ts0 X0.5\ncircle2 X0.5 Y0 I0 J10\nlinear X1";
   const std::string text = with_motors(lines, fmt::format("Coord[1].SegMoveTime={}", tau));
   for (const auto fine : {pmac::motion::FineInterpolation::kThrough, pmac::motion::FineInterpolation::kBspline}) {
     ProgramBench bench("lines.pmc", text, fine);
