@@ -8,7 +8,7 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of the limits that a plan may use. What lies between the places that are looked at is in the rest.
-constexpr double kAccel = 0.9995, kJerk = 0.997;
+constexpr double kSpeed = 0.9995, kAccel = 0.9995, kJerk = 0.997;
 /// Of these, what braking uses: a plan has room for being followed from a slightly other state.
 constexpr double kBrake = 0.999;
 /// It lets go where that takes this part of the jerk limit.
@@ -58,7 +58,8 @@ bool JerkPlan::passes(const PathCell& cell, double at_mu, double speed, double a
     const double k = between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], part);
     const double motor_accel = k * speed * speed + t * accel;
     const double motor_jerk = cell.curvature_rate[m] * speed * speed * speed + 3 * k * speed * accel + t * jerk;
-    good = std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
+    const bool slow = limits[m].max_speed_mu_ms <= 0 || std::abs(t) * speed <= limits[m].max_speed_mu_ms * kSpeed;
+    good = slow && std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
   }
   if (!good) trouble_ = {at_mu, std::sqrt(max_speed2), false};
   return good;
