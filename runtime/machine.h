@@ -61,6 +61,10 @@ struct FaultRecord {
   int motor = -1;               // whose fault it is, where it is one motor's
 };
 
+/// With limit_jerk: a place where the path's acceleration steps, as where a line meets an arc. ratio: the jerk that this is at servo rate,
+/// in limits of the motor for which that is most.
+struct JerkJoin { double time_ms = 0; int coord = -1; bytecode::SourceLine source; double ratio = 0; };
+
 /// What the owner wants to hear. Any may be empty.
 struct MachineObservers {
   std::function<void(const std::string&)> answer;            // reports of on-line commands, [send N] lines
@@ -70,12 +74,14 @@ struct MachineObservers {
   std::function<void(const OutputChange&)> output;
   std::function<void(const FaultRecord&)> fault;
   std::function<void(int coord, const motion::MotionCommand&)> motion_command;
+  std::function<void(const JerkJoin&)> jerk_join;
   std::function<void(double time_ms)> progress;               // now and then while running
 };
 
 struct MachineOptions {
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool limit_jerk = false;              // lookahead keeps Motor[].InvJmax as well
   bool note_governing = false;                                // of every move, for reports
   OnlineCompiler compile_online;                              // cmd "...", --at, console
   /// A line of a source file, for list; empty where the owner has no source.

@@ -34,7 +34,8 @@ void catch_signals() {
 bool shows_progress(const RunOptions& options) { return !options.quiet && isatty(STDERR_FILENO) != 0; }
 
 /// Messages of the machine, as they come: faults and refusals on standard error, answers on standard output.
-runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console) {
+runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console,
+                                    runtime::LimitCheck*& excuse) {
   runtime::MachineObservers o;
   const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
   o.answer = [quiet = options.quiet, answers_to_stderr, &console](const std::string& text) {
@@ -51,6 +52,10 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   };
   o.move = [&report](const runtime::MoveRecord& move) { report.add(move); };
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
+  o.jerk_join = [&report, &excuse](const runtime::JerkJoin& join) {
+    report.add(join);
+    if (excuse) excuse->excuse_jerk(join.coord, join.time_ms);
+  };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {
     report.add(record);
     const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : record.coord < 0 ? "motor " + std::to_string(record.motor) : "coordinate system " + std::to_string(record.coord);
@@ -118,9 +123,11 @@ int run(const RunOptions& options) {
   compiler::Session session(compile_options);
   Report report(options.json == JsonDetail::kMoves || options.stats);
   runtime::Machine* place = nullptr;
+  runtime::LimitCheck* excuse = nullptr;
   runtime::MachineOptions machine_options;
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
+  machine_options.limit_jerk = options.limit_jerk;
   machine_options.max_instructions = options.max_instructions;
   machine_options.note_governing = options.stats;
   Console console(options);
@@ -129,7 +136,7 @@ int run(const RunOptions& options) {
     const auto typed = file == Console::kName ? console.typed_line(line) : std::nullopt;
     return typed ? typed : lines(file, line);
   };
-  machine_options.observers = observers(options, report, place, console);
+  machine_options.observers = observers(options, report, place, console, excuse);
   Emitter emitter(options.emit);
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);
@@ -141,6 +148,7 @@ int run(const RunOptions& options) {
   machine.add_sink(&statistics);
   runtime::LimitCheck limit_check([&machine](int motor, double time_ms) { return machine.activity(motor, time_ms); });
   if (options.check_limits) machine.add_sink(&limit_check);
+  excuse = &limit_check;
   machine.add_sink(&recorder);
   emitter.attach(machine, recorder);
 

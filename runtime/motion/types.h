@@ -85,6 +85,7 @@ struct PipelineConfig {
   FineInterpolation fine = FineInterpolation::kThrough;
   RampRule ramp_rule = RampRule::kPower;
   bool lookahead = false;               // segmented only
+  bool limit_jerk = false;              // lookahead keeps InvJmax as well
   int lookahead_segments = 0;           // LHDistance
   double history_ms = 0;                // programmed time behind the last sample that stays known, for retracing
   double servo_period_ms = 0.44274211;  // at which limits are counted where the path's velocity steps; 0: stop there

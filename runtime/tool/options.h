@@ -30,6 +30,7 @@ struct RunOptions {
   JsonDetail json = JsonDetail::kNone;
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool limit_jerk = false;
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,
