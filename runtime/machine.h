@@ -78,8 +78,6 @@ struct MachineObservers {
   std::function<void(const FaultRecord&)> fault;
   std::function<void(int coord, const motion::MotionCommand&)> motion_command;
   std::function<void(const JerkJoin&)> jerk_join;
-  /// Every source line that a motion or PLC program begins to execute. who: "&1 prog 5", "plc 2". Runs are slower with it.
-  std::function<void(double time_ms, const std::string& who, bytecode::SourceLine)> line;
   std::function<void(double time_ms)> progress;               // now and then while running
 };
 

@@ -139,11 +139,6 @@ int run(const RunOptions& options) {
     return typed ? typed : lines(file, line);
   };
   machine_options.observers = observers(options, report, place, console, excuse);
-  if (options.trace)
-    machine_options.observers.line = [&place, text_of = machine_options.source_text](double time_ms, const std::string& who, bytecode::SourceLine source) {
-      const std::string file = source.file >= 0 ? place->files()[static_cast<std::size_t>(source.file)] : std::string();
-      std::fprintf(stderr, "%12.6f s  %-12s %s: %s\n", time_ms / 1000.0, who.c_str(), place->place(source).c_str(), text_of(file, source.line).value_or("").c_str());
-    };
   Emitter emitter(options.emit);
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);

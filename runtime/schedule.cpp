@@ -11,7 +11,6 @@
 #include "runtime/motor_moves.h"
 #include "runtime/servo/servo_cycle.h"
 #include "runtime/state.h"
-#include "runtime/trace.h"
 
 namespace pmac::runtime {
 namespace {
@@ -150,9 +149,9 @@ double Machine::State::sample_to(double time_ms) {
 }
 
 void Machine::State::scan(int number, double) {
-  Runner& runner = *plcs[static_cast<std::size_t>(number)].runner;
-  runner.thread.reset_jump_backs();
-  finish_scan(number, run_program(*this, runner, kPlcBudget, 1));
+  Thread& thread = plcs[static_cast<std::size_t>(number)].runner->thread;
+  thread.reset_jump_backs();
+  finish_scan(number, thread.run(*host, kPlcBudget, 1));
   execute_queued_commands();
 }
 

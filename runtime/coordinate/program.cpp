@@ -12,7 +12,6 @@
 #include "runtime/motor_moves.h"
 #include "runtime/servo/servo_cycle.h"
 #include "runtime/state.h"
-#include "runtime/trace.h"
 
 namespace pmac::runtime {
 namespace {
@@ -165,7 +164,7 @@ void CoordSystem::calculate(double time_ms) {
   }
   calculated_at_ms_ = time_ms;
   const auto go_back = static_cast<std::int64_t>(machine_.elements.get(ElementId::kCoordGoBack, static_cast<unsigned>(number_)));
-  RunResult result = run_program(machine_, runner_, kPassBudget, std::max<std::int64_t>(go_back, 0) + 2);
+  RunResult result = runner_.thread.run(*machine_.host, kPassBudget, std::max<std::int64_t>(go_back, 0) + 2);
   machine_.instructions += result.instructions;
   if (!program_running()) return;
   if (stop_requested_) {

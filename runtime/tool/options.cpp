@@ -58,7 +58,6 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo"}));
   app.add_flag("--stats", o.stats, "print times, speeds and accelerations at the end");
   app.add_flag("--check-limits", o.check_limits, "hold every servo sample to the motors' limits; exit 3 where one is exceeded");
-  app.add_flag("--trace", o.trace, "name every line that a program begins to execute, on standard error");
   app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
   app.add_option("--fine", fine, "fine interpolation between segments")->check(CLI::IsMember({"through", "bspline"}))->capture_default_str();
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();

@@ -107,18 +107,6 @@ TEST_CASE("check-limits: jogs are held to JogSpeed, MaxSpeed and their rates", "
   CHECK(w.run("pmac-run", "p.pmc -e '#1j:20000' --check-limits").code == 0);
 }
 
-TEST_CASE("trace: every line of a program as it is calculated", "[tools]") {
-  const Workspace w;
-  w.write("p.pmc", "&1\n#1->1000X\nopen prog 1\nP1=2\nwhile (P1 > 0) {\n  P1--\n}\nlinear F10 X1\ndwell 100\ncall 5\nclose\nopen subprog 5\nP2=7\nclose\n");
-  const ToolResult r = w.run("pmac-run", "p.pmc -e '&1b1r' --trace");
-  CHECK(r.code == 0);
-  std::string lines;
-  for (std::size_t at = r.err.find("p.pmc:"); at != std::string::npos; at = r.err.find("p.pmc:", at + 1)) lines += r.err.substr(at + 6, r.err.find(':', at + 6) - at - 6) + " ";
-  CHECK(lines == "4 5 6 5 6 5 8 9 10 13 10 ");
-  CHECK(contains(r.err, "    0.000000 s  &1 prog 1    p.pmc:4: P1=2"));
-  CHECK(contains(w.run("pmac-run", "p.pmc -e '&1b1r'").err, "p.pmc") == false);
-}
-
 TEST_CASE("stats: what governed each move", "[tools]") {
   const Workspace w;
   const std::string limits = "Motor[1].MaxSpeed=30 Motor[2].MaxSpeed=500 Motor[1].InvAmax=1 Motor[2].InvAmax=100\n&1 define lookahead 1000\nCoord[1].LHDistance=100";
