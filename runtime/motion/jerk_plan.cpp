@@ -8,7 +8,7 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of the limits that a plan may use. What lies between the places that are looked at is in the rest.
-constexpr double kSpeed = 0.9995, kAccel = 0.9995, kJerk = 0.997;
+constexpr double kSpeed = 0.999, kAccel = 0.9995, kJerk = 0.997;
 /// Of these, what braking uses: a plan has room for being followed from a slightly other state.
 constexpr double kBrake = 0.999;
 /// It lets go where that takes this part of the jerk limit.
@@ -65,6 +65,14 @@ bool JerkPlan::passes(const PathCell& cell, double at_mu, double speed, double a
   return good;
 }
 
+/// The highest speed of a step in which speeding up ends.
+bool JerkPlan::peak_passes(const PathState& state, double jerk) {
+  const double v = state.speed_mu_ms, a = state.accel_mu_ms2, t = -a / jerk, at_mu = state.at.at_mu + t * (v + t * (a / 2 + t * jerk / 6));
+  std::size_t at = state.at.cell;
+  while (at_mu > path_.cell(at).end_mu() && at + 1 < path_.cell_end()) ++at;
+  return passes(path_.cell(at), at_mu, v + a * t / 2, 0, jerk);
+}
+
 /// Runs the step from the state; false, with the trouble noted, where it breaks a limit or leaves the known path.
 bool JerkPlan::advance(PathState& state, const JerkStep& step) {
   const double h = step.duration_ms, j = step.jerk_mu_ms3, v0 = state.speed_mu_ms, a0 = state.accel_mu_ms2;
@@ -76,6 +84,7 @@ bool JerkPlan::advance(PathState& state, const JerkStep& step) {
   }
   std::size_t at = state.at.cell;
   if (!passes(path_.cell(at), from_mu, v0, a0, j)) return false;
+  if (a0 > 0 && a1 < 0 && !peak_passes(state, j)) return false;
   while (to_mu > path_.cell(at).end_mu()) {
     const PathCell& cell = path_.cell(at);
     const double part = to_mu > from_mu ? (cell.end_mu() - from_mu) / (to_mu - from_mu) : 0;
