@@ -27,6 +27,7 @@ struct Motor {
   double home_position_mu = 0;     // HomePos
   double prejog_mu = 0;
   bool closed_loop = true, amplifier_enabled = true, home_complete = true;
+  double output_percent = 0;       // of Motor[].MaxDac, in open loop; an ideal motor has no mechanics that it would move
   double jog_start_ms = 0, jog_start_mu = 0;  // of the jog that is under way
   bytecode::SourceLine jog_source;
   std::string_view jog_mode = "jog";
@@ -85,9 +86,17 @@ struct Motor {
   void kill(double time_ms) {
     rest(time_ms, position_at(time_ms));
     closed_loop = amplifier_enabled = kill_at_rest = false;
+    output_percent = 0;
     kill_ms = kNever;
   }
+  /// Open loop with the amplifier on.
+  void open_loop(double time_ms, double percent) {
+    kill(time_ms);
+    amplifier_enabled = true;
+    output_percent = percent;
+  }
   void enable() {
+    output_percent = 0;
     closed_loop = amplifier_enabled = true;
     kill_at_rest = false;
     kill_ms = kNever;

@@ -91,7 +91,7 @@ void arrive(Motor& m, double time_ms) {
 std::string jog_to(Machine::State& s, Motor& m, double target_mu, bytecode::SourceLine source, std::optional<double> trigger_distance_mu) {
   const double distance_mu = trigger_distance_mu.value_or(0);
   if (!std::isfinite(target_mu) || !std::isfinite(distance_mu))
-    return fmt::format("error #21: ILLEGAL PARAMETER: jog target {} of motor {}", std::isfinite(target_mu) ? distance_mu : target_mu, m.number);
+    return fmt::format("error #21: ILLEGAL PARAMETER: jog target {} of motor {}", number_text(std::isfinite(target_mu) ? distance_mu : target_mu), m.number);
   begin_record(s, m, "jog", source);
   move_to(s, m, target_mu, jog_parameters(s, m));
   if (trigger_distance_mu) seek_trigger(s, m, distance_mu, jog_parameters(s, m));
@@ -113,7 +113,7 @@ void jog_stop(Machine::State& s, Motor& m) {
 
 std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source) {
   const double speed_mu_ms = element(s, ElementId::kMotorHomeVel, m);
-  if (speed_mu_ms == 0 || !std::isfinite(speed_mu_ms)) return fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].HomeVel is {}", m.number, speed_mu_ms);
+  if (speed_mu_ms == 0 || !std::isfinite(speed_mu_ms)) return fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].HomeVel is {}", m.number, number_text(speed_mu_ms));
   if (!trigger_mu(s, m))
     return fmt::format("error #21: ILLEGAL PARAMETER: motor {} has no trigger and would move for ever; say where it is: Sim.Motor[{}].TriggerPos=...",
                        m.number, m.number);
@@ -126,6 +126,13 @@ std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source) {
   if (std::isinf(m.trigger_at))
     s.warn(source, fmt::format("motor {} moves away from its trigger (Sim.Motor[{}].TriggerPos) and will not find it", m.number, m.number));
   return {};
+}
+
+Fault killed_under_program(Machine::State& s, const Motor& m) {
+  const CoordSystem& coord = s.coord(m.coord);
+  return {FaultKind::kMotorKilled, coord.line_in_motion(s.now_ms),
+          fmt::format("the loop of motor {} was opened under program {}, which is aborted; abort a program before a motor of it is killed", m.number,
+                      coord.runner().thread.top_program().program->number)};
 }
 
 void delay_kill(Machine::State& s, Motor& m, double brake_ms) {
@@ -155,7 +162,11 @@ void service_motor(Machine::State& s, Motor& m) {
   if (m.seeks_trigger() && m.trigger_ms() <= s.now_ms) turn_to_trigger(s, m);
   if (m.source == Motor::Source::kProfile && m.profile_end_ms() <= s.now_ms) arrive(m, s.now_ms);
   if (m.kill_at_rest && !m.moving()) delay_kill(s, m, s.now_ms);
-  if (m.kill_ms <= s.now_ms) m.kill(s.now_ms);
+  if (m.kill_ms <= s.now_ms) {
+    const bool in_use = m.coord >= 0 && s.coord(m.coord).program_running();
+    if (in_use) s.coord(m.coord).fail(s.now_ms, killed_under_program(s, m));
+    m.kill(s.now_ms);
+  }
   if (m.jogging && !m.moving()) report(s, m);
 }
 

@@ -18,6 +18,8 @@ void jog_stop(Machine::State& s, Motor& m);
 /// At HomeVel until the trigger, back to it and on to HomeOffset, which becomes position 0.
 std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source);
 
+/// The fault of a program whose motor is killed. The motor belongs to a coordinate system that executes one.
+Fault killed_under_program(Machine::State& s, const Motor& m);
 /// The brake engages; the motor is killed Motor[].BrakeOnDelay later.
 void delay_kill(Machine::State& s, Motor& m, double brake_ms);
 
@@ -28,7 +30,7 @@ void trigger_moved(Machine::State& s, Motor& m);
 
 /// When service_motor() has something to do.
 double next_motor_event_ms(const Motor& m);
-/// A trigger that was passed, a profile that has ended.
+/// A trigger that was passed, a profile that has ended, a delayed kill that is due.
 void service_motor(Machine::State& s, Motor& m);
 
 }  // namespace pmac::runtime

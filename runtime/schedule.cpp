@@ -78,8 +78,12 @@ void Machine::State::sample_to(double time_ms) {
   if (tick_ms(tick + 1) > time_ms) return;
   std::vector<int>& used = block_motors;
   used.clear();
-  for (const Motor& m : motors)
-    if (m.in_use) used.push_back(m.number);
+  block_home.clear();
+  for (const Motor& m : motors) {
+    if (!m.in_use) continue;
+    used.push_back(m.number);
+    block_home.push_back(m.home_position_mu);
+  }
   const bool single = gather.enabled() && gather.needs_single_ticks();
   std::vector<double>& rows = block_rows;
   std::vector<double>& path = block_path;
@@ -103,7 +107,7 @@ void Machine::State::sample_to(double time_ms) {
         std::copy_n(path.begin() + static_cast<std::ptrdiff_t>(i * n), n, rows.begin() + static_cast<std::ptrdiff_t>(at * n));
       }
     }
-    const SampleBlock block{tick + 1, period_ms(), count, used, std::span<const double>(rows.data(), used.size() * n)};
+    const SampleBlock block{tick + 1, period_ms(), count, used, std::span<const double>(rows.data(), used.size() * n), block_home};
     tick += count;
     now_ms = std::max(now_ms, tick_ms(tick));
     for (SampleSink* sink : sinks) sink->take(block);
@@ -187,10 +191,9 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
   }
   outcome.time_ms = now_ms;
   if (limits.more_follows) return outcome;
-  for (const auto& c : coords) c->report_unfinished(now_ms, true);
   for (const auto& c : coords)
-    if (c->program_active())
-      outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->runner().thread.source())));
+    if (c->program_active()) outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->line_at(now_ms))));
+  for (const auto& c : coords) c->report_unfinished(now_ms, true);
   sample_to(tick_ms(tick) >= now_ms ? now_ms : tick_ms(tick + 1));
   outcome.ticks = tick;
   outcome.instructions = instructions;

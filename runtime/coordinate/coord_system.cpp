@@ -71,6 +71,17 @@ void CoordSystem::fail(double time_ms, Fault fault) {
   machine_.report_fault({time_ms, number_, -1, std::move(fault)});
 }
 
+bytecode::SourceLine CoordSystem::line_in_motion(double time_ms) const {
+  if (phase_ == Phase::kRapid) return rapid_.source;
+  if (phase_ == Phase::kDwelling || phase_ == Phase::kHoming) return item_source_;
+  for (const ExecutedMove& move : executed_)
+    if (time_base_.time_at(move.timing.end_ms) > time_ms) return move.source;
+  if (on_path_ && !pending_moves_.empty()) return pending_moves_.front().source;
+  return runner_.thread.active() ? runner_.thread.source() : item_source_;
+}
+
+bytecode::SourceLine CoordSystem::line_at(double time_ms) const { return runner_.thread.active() ? runner_.thread.source() : line_in_motion(time_ms); }
+
 bool CoordSystem::executes(const bytecode::Program* program) const {
   return program_active() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);
 }

@@ -101,6 +101,13 @@ class CoordSystem {
   const Runner& runner() const { return runner_; }
   Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
+  /// The line of the move, dwell or search that is being executed; where there is none, the line at which the program calculates.
+  bytecode::SourceLine line_in_motion(double time_ms) const;
+  /// Where the program stands, for a message: at its calculation, or once that has ended, in motion.
+  bytecode::SourceLine line_at(double time_ms) const;
+  /// Where the program stood when it was aborted last; no program where it has run on since.
+  struct Stand { ProgramHandle program; bytecode::SourceLine source; };
+  const Stand& aborted() const { return aborted_; }
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
@@ -239,6 +246,7 @@ class CoordSystem {
   std::uint32_t forward_axes_ = 0;
   Runner runner_, kinematics_;
   ProgramHandle pointed_;
+  Stand aborted_;
   std::int64_t pointed_label_ = -1;
   enum class RotaryState { kNone, kExecutes, kWaits };  // kWaits: all lines are done, the next ones start at once
   std::deque<ProgramHandle> rotary_;                    // lines as they were appended; the first ones execute

@@ -15,6 +15,7 @@ struct SampleBlock {
   int count = 0;
   std::span<const int> motors;        // numbers, ascending
   std::span<const double> position_mu;// [motor][count], from home
+  std::span<const double> home_mu;    // [motor]: where home is; it moves between blocks only
   double time_ms(int k) const { return static_cast<double>(first_tick + k) * period_ms; }
   double at(int motor_index, int k) const { return position_mu[static_cast<std::size_t>(motor_index) * count + k]; }
 };
@@ -26,7 +27,7 @@ class SampleSink {
   virtual void take(const SampleBlock& block) = 0;
 };
 
-/// Worst speed and acceleration of every motor, from first and second differences of the samples.
+/// Worst speed and acceleration of every motor, from first and second differences of the samples. A home that moves is no motion.
 class MotionStatistics : public SampleSink {
  public:
   struct Row {
@@ -41,7 +42,7 @@ class MotionStatistics : public SampleSink {
   std::vector<Row> rows() const;
 
  private:
-  struct State { Row row; double previous_mu = 0, before_mu = 0; int known = 0; };
+  struct State { Row row; double previous_mu = 0, before_mu = 0, home_mu = 0; };
   std::vector<State> states_;  // by motor number
 };
 

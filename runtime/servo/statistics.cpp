@@ -15,7 +15,12 @@ void MotionStatistics::take(const SampleBlock& block) {
       s.row.motor = motor;
       s.row.seen = true;
       s.row.min_mu = s.row.max_mu = s.previous_mu = s.before_mu = block.at(static_cast<int>(m), 0);
+      s.home_mu = block.home_mu[m];
     }
+    const double home_moved_mu = block.home_mu[m] - s.home_mu;
+    s.previous_mu -= home_moved_mu;
+    s.before_mu -= home_moved_mu;
+    s.home_mu = block.home_mu[m];
     for (int k = 0; k < block.count; ++k) {
       const double now = block.at(static_cast<int>(m), k);
       const double speed = std::abs(now - s.previous_mu) / h;

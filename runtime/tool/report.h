@@ -1,6 +1,7 @@
 // What a run tells at its end: the JSON object and the statistics for people.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
-  void add_refusal(const std::string& command, const std::string& reason) { refusals_.emplace_back(command, reason); }
+  /// True for the first one of its kind; the others are counted. Beyond kMostRefusals kinds they are counted together.
+  bool add_refusal(const std::string& command, const std::string& reason);
 
   /// Moves in order of their start. The object of --json; see docs/pmac-run.md for its keys.
   std::string json(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
@@ -27,6 +29,8 @@ class Report {
   /// The lines of --stats.
   std::string text(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
                    double wall_s) const;
+  /// A line for every refusal that came again, with its count.
+  std::string repeated_refusals() const;
   /// The log of output changes, a line each.
   std::string output_log(const runtime::Machine& machine) const;
   /// Commands that were refused, other than those of the console, which are answered there.
@@ -39,7 +43,11 @@ class Report {
   std::vector<runtime::MoveRecord> moves_;
   std::vector<runtime::OutputChange> outputs_;
   std::vector<runtime::FaultRecord> faults_;
-  std::vector<std::pair<std::string, std::string>> refusals_;   // command, reason
+  static constexpr std::size_t kMostRefusals = 1000;
+  struct Refusal { std::string command, reason; std::size_t count = 1; };
+  std::vector<Refusal> refusals_;                                              // in order of their first time
+  std::map<std::pair<std::string, std::string>, std::size_t> refusal_index_;   // by command and reason, into refusals_
+  std::size_t more_refusals_ = 0;                                              // beyond kMostRefusals
 };
 
 /// "idle", "until", "fault", "time-limit" or "budget".
