@@ -17,13 +17,21 @@ bool targetFollows() {
   const size_t type = _input->LA(1);
   return (type == STAR || type == IO_POINTER || type == NAME) && sameLine();
 }
+/// The name of a local variable comes next, which holds the number of a thing: kill m. Not the left side of an assignment.
+bool numberNameFollows() {
+  const size_t next = _input->LA(2);
+  const bool begins_statement = (next >= ASSIGN && next <= SYNC_DECREMENT) || next == LEFT || next == LEFT_BRACKET || next == DOT || next == ARROW || next == COLON;
+  const size_t before = _input->LA(-1);
+  const bool is_address = before == HASH || before == COORD || before == AMPERSAND;
+  return _input->LA(1) == NAME && sameLine() && !begins_statement && !is_address;
+}
 /// An else of that type comes next, or behind one semicolon.
 bool elseFollows(size_t type) { return _input->LA(_input->LA(1) == SEMICOLON ? 2 : 1) == type; }
 }
 
 tokens {
   // what a WORD can turn out to be
-  NAME, MEMBER, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, ELSE_IF, BIT_AND, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
+  NAME, MEMBER, SELF_FORMAT, AXIS, VECTOR, RADIUS, NORMAL_VECTOR, PSET_AXIS, CODE, LINE_WORD, LETTER, VAR, JOIN, LINE_END, ELSE_IF, BIT_AND, COORD, LINE_PERCENT, LETTER_C, LETTER_D, LETTER_F, LETTER_I, LETTER_M, LETTER_N, LETTER_R,
   // keywords of both tables
   OPEN, CLOSE, PROG, PLC, SUBPROG, FORWARD, INVERSE, ROTARY, GLOBAL, CSGLOBAL, PTR, LOCAL, SUB,
   ABORT, ADISABLE, BEGIN, CMD, DDISABLE, DISABLE, DKILL, ENABLE, HOLD, HOME, HOMEZ, JOG, JOGRET, KILL, LH, PAUSE, PMATCH, RESUME,
@@ -195,7 +203,7 @@ declaration
   ;
 declarator : NAME ('(' expression ')')? ('=' expression)? ;
 pointerDeclarator : NAME ('(' NUMBER ')')? '->' pointerTarget ;
-pointerTarget : '*' | IO_POINTER | reference NUMBER* ;
+pointerTarget : '*' (SELF_FORMAT NUMBER*)? | IO_POINTER | reference NUMBER* ;
 
 // --- motors, coordinate systems, programs, ports: statements that are on-line commands too ------------------------------------
 
@@ -214,7 +222,7 @@ programControl
 startItem : NUMBER ('..' NUMBER)? (':' programName)? | ':' programName | NAME ;
 programName : NUMBER | NAME ;
 numberList : numberItem (',' numberItem)* ;
-numberItem : NUMBER ('..' NUMBER)? | '(' expression ')' | '*' ;
+numberItem : NUMBER ('..' NUMBER)? | {numberNameFollows()}? NAME | '(' expression ')' | '*' ;
 plcList : plcItem (',' plcItem)* ;
 plcItem : NUMBER ('..' NUMBER)? | NAME | '(' expression ')' | '*' ;
 

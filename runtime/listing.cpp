@@ -80,7 +80,7 @@ std::string list_place(Machine::State& s, int addressed_coord, const std::string
   CoordSystem::Stand stand = coord.aborted();
   if (coord.program_active()) {
     const bool calculates = !wants_aborted && coord.runner().thread.active();
-    stand = {calculates ? coord.runner().thread.program() : coord.runner().thread.top_program(), wants_aborted ? coord.line_in_motion(s.now_ms) : coord.line_at(s.now_ms)};
+    stand = {calculates ? coord.runner().thread.program() : coord.runner().thread.top_program(), wants_aborted ? coord.executing_source(s.now_ms) : coord.line_at(s.now_ms)};
   } else if (!wants_aborted || !stand.program) {
     return fmt::format("error #22: PROGRAM NOT IN BUFFER: no program {} in coordinate system {}", wants_aborted ? "is active or was aborted" : "is active", addressed_coord);
   }

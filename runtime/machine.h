@@ -22,6 +22,7 @@
 #include "runtime/fault.h"
 #include "runtime/gather_unit.h"
 #include "runtime/motion/types.h"
+#include "runtime/servo/activity.h"
 #include "runtime/servo/servo.h"
 
 namespace pmac::motion {
@@ -41,6 +42,8 @@ struct MoveRecord {
   int motor = -1;
   double start_ms = 0, end_ms = 0;
   double length = 0;            // axis units along the path, 0 for dwell and delay; motor units for a jog
+  std::string_view time_rule = {};                        // what a block's time comes from: F, tm, ...; empty for others
+  std::vector<motion::GoverningShare> governed = {};      // longest first; only with MachineOptions::note_governing
 };
 
 /// A write by a program that changed a point of a simulated card.
@@ -55,6 +58,7 @@ struct FaultRecord {
   double time_ms = 0;
   int coord = -1, plc = -1;
   Fault fault;
+  int motor = -1;               // whose fault it is, where it is one motor's
 };
 
 /// What the owner wants to hear. Any may be empty.
@@ -72,6 +76,7 @@ struct MachineObservers {
 struct MachineOptions {
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool note_governing = false;                                // of every move, for reports
   OnlineCompiler compile_online;                              // cmd "...", --at, console
   /// A line of a source file, for list; empty where the owner has no source.
   std::function<std::optional<std::string>(const std::string& file, int line)> source_text;
@@ -137,6 +142,9 @@ class Machine {
   bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu);
   /// Motor positions of an axis position, into motor_mu by motor number; the fault where there is none.
   std::optional<Fault> motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu);
+
+  /// What a motor does at a tick of the block that the sinks are being given, and the limits that hold for it.
+  MotorActivity activity(int motor, double time_ms) const;
 
   struct State;
 

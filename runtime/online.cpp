@@ -95,7 +95,7 @@ Flow pset(const Call& call) {
 }
 
 /// disable kills at once, ddisable after the brakes' delay, adisable when the motors have come to rest and after that delay. The program is
-/// aborted by all of them. The ideal motors stand where they are killed.
+/// aborted by all of them.
 Flow disable_motors(const Call& call, CoordSystem& coord, int number) {
   const double now = call.s.now_ms;
   const Flow flow = abort_coord(call, coord, number);
@@ -116,7 +116,8 @@ Flow program_verb(const Call& call, CoordSystem& coord, int number) {
   switch (call.verb) {
     case ControlVerb::kRun: call.refusal = coord.run(now); break;
     case ControlVerb::kResume: call.refusal = coord.resume(now); break;
-    case ControlVerb::kForward: call.refusal = coord.resume(now); break;
+    case ControlVerb::kForward: call.refusal = coord.forward_on_path(now); break;
+    case ControlVerb::kRetrace: call.refusal = coord.retrace(now); break;
     case ControlVerb::kHold: call.refusal = coord.hold(now); break;
     case ControlVerb::kQuickStop: call.refusal = coord.quick_stop(now); break;
     case ControlVerb::kPause:
@@ -145,15 +146,13 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kRun:
     case ControlVerb::kResume:
     case ControlVerb::kForward:
+    case ControlVerb::kRetrace:
     case ControlVerb::kHold:
     case ControlVerb::kQuickStop:
     case ControlVerb::kPause:
     case ControlVerb::kStep: return program_verb(call, coord, number);
     case ControlVerb::kTimeBase: call.refusal = coord.set_time_base(call.s.now_ms, call.argument(1) / 100); return Flow::kContinue;
     case ControlVerb::kReportTimeBase: call.s.answer(fmt::format("{}", coord.time_base().rate_at(call.s.now_ms) * 100)); return Flow::kContinue;
-    case ControlVerb::kRetrace:
-      call.refusal = "error #20: ILLEGAL CMD: retracing the path backwards (<) is not simulated; > and r go on forwards";
-      return Flow::kContinue;
     case ControlVerb::kPread:
     case ControlVerb::kVread:
     case ControlVerb::kDread:
@@ -182,7 +181,7 @@ bool may_jog(const Call& call, const Motor& m) {
     return false;
   }
   if (!m.closed_loop && call.verb != ControlVerb::kPhase) call.refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", m.number);
-  else if (m.coord >= 0 && call.s.coord(m.coord).program_running())
+  else if (m.has_axis() && call.s.coord(m.coord).program_running())
     call.refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}, which executes a program", m.number, m.coord);
   return call.refusal.empty();
 }
@@ -191,7 +190,7 @@ bool may_jog(const Call& call, const Motor& m) {
 /// goes on, and its next move is the fault.
 Flow leave_closed_loop(const Call& call, const Motor& m) {
   Runner& r = call.runner;
-  if (m.coord < 0 || !call.s.coord(m.coord).program_running()) return Flow::kContinue;
+  if (!m.has_axis() || !call.s.coord(m.coord).program_running()) return Flow::kContinue;
   CoordSystem& coord = call.s.coord(m.coord);
   if (r.kind == RunnerKind::kKinematics && r.number == m.coord) return abort_coord(call, coord, m.coord);
   const bool inside = r.kind == RunnerKind::kMotionProgram && r.number == m.coord;
@@ -219,7 +218,7 @@ void phase(const Call& call, Motor& m) {
   m.enable();
 }
 
-/// out{percent of Motor[].MaxDac}: what the motor does under the output is mechanics, which an ideal motor has not: it stands.
+/// out{percent of Motor[].MaxDac}: it drives the mass of a plant; a motor without one stands.
 Flow open_loop(const Call& call, Motor& m) {
   const double percent = call.argument(1);
   if (!(std::abs(percent) <= 100)) {
@@ -227,9 +226,13 @@ Flow open_loop(const Call& call, Motor& m) {
     return Flow::kContinue;
   }
   const Flow flow = leave_closed_loop(call, m);
-  m.open_loop(call.s.now_ms, percent);
-  if (percent != 0)
-    call.s.warn(call.runner.thread.source(), fmt::format("motor {} stands under its open-loop output of {} %: an ideal motor has no mechanics", m.number, percent));
+  m.kill(call.s.now_ms);
+  m.amplifier_enabled = true;
+  m.open_loop_share = percent / 100;
+  m.in_use = m.in_use || percent != 0;
+  const bool plant = call.s.elements.get(ElementId::kSimMotorPlant, static_cast<unsigned>(m.number)) != 0;
+  if (percent != 0 && !plant)
+    call.s.warn(call.runner.thread.source(), fmt::format("motor {} stands under its open-loop output of {} %: it has no mechanics; give it a plant: Sim.Motor[{}].Plant=1", m.number, percent, m.number));
   return flow;
 }
 

@@ -11,6 +11,7 @@
 #include "runtime/machine.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/emit.h"
+#include "runtime/tool/limit_report.h"
 #include "runtime/tool/load.h"
 #include "runtime/tool/options.h"
 #include "runtime/tool/outputs.h"
@@ -51,7 +52,7 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {
     report.add(record);
-    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : "coordinate system " + std::to_string(record.coord);
+    const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : record.coord < 0 ? "motor " + std::to_string(record.motor) : "coordinate system " + std::to_string(record.coord);
     std::fprintf(stderr, "%s: fault at %.6f s, %s: %s\n", machine->place(record.fault.source).c_str(), record.time_ms / 1000.0,
                  who.c_str(), record.fault.detail.c_str());
   };
@@ -120,6 +121,7 @@ int run(const RunOptions& options) {
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
   machine_options.max_instructions = options.max_instructions;
+  machine_options.note_governing = options.stats;
   Console console(options);
   machine_options.compile_online = online_compiler(session, &console.error_place());
   machine_options.source_text = [lines = source_lines(session), &console](const std::string& file, int line) {
@@ -136,6 +138,8 @@ int run(const RunOptions& options) {
   Recorder recorder(machine);
   Outputs outputs(options, machine, recorder);
   machine.add_sink(&statistics);
+  runtime::LimitCheck limit_check([&machine](int motor, double time_ms) { return machine.activity(motor, time_ms); });
+  if (options.check_limits) machine.add_sink(&limit_check);
   machine.add_sink(&recorder);
   emitter.attach(machine, recorder);
 
@@ -155,17 +159,23 @@ int run(const RunOptions& options) {
   if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.console && !options.quiet && exit_code(machine, report, outcome) == kExitOk)
     std::fprintf(stderr, "pmac-run: loaded, and nothing was started; use -e '&1 b1r' to run program 1 in coordinate system 1\n");
   const bool written = outputs.finish();
+  std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() ? stdout : stderr;
   if (options.stats) {
-    std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() ? stdout : stderr;
     std::fputs(report.text(machine, outcome, statistics, wall_s).c_str(), out);
+    std::fputs(report.move_log(machine).c_str(), out);
     std::fputs(report.output_log(machine).c_str(), out);
   }
+  const std::vector<runtime::LimitCheck::Row> limit_rows = limit_check.rows();
+  const bool limits_kept = all_keep_limits(limit_rows);
+  report.add_limits(limit_rows);
+  if (options.check_limits) std::fputs(limit_text(machine, limit_rows).c_str(), out);
   if (options.json != JsonDetail::kNone) std::fputs(report.json(machine, outcome, statistics, options.json).c_str(), stdout);
   if (std::fflush(stdout) != 0 || !written) {
     if (written) std::perror("pmac-run: standard output");
     return kExitUsage;
   }
-  return exit_code(machine, report, outcome);
+  const int code = exit_code(machine, report, outcome);
+  return code == kExitOk && !limits_kept ? kExitFault : code;
 }
 
 }  // namespace

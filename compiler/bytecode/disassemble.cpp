@@ -212,7 +212,7 @@ std::string hex_text(std::uint32_t value) {
 std::string pointer_target_text(const Module& module, const PointerDefinition& definition) {
   const std::string sign = definition.is_signed ? "s" : "u";
   switch (definition.kind) {
-    case PointerKind::kSelf: return "*";
+    case PointerKind::kSelf: return definition.has_field ? (definition.is_signed ? "*i." : "*u.") + std::to_string(definition.width) : "*";
     case PointerKind::kIo: return sign + ".io:" + hex_text(definition.address) + field_text(definition);
     case PointerKind::kUserInteger: return sign + ".user:" + std::to_string(definition.address) + field_text(definition);
     case PointerKind::kUserFloat: return "f.user:" + std::to_string(definition.address);

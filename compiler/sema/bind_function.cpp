@@ -58,7 +58,13 @@ void Binder::bind_function(ir::Expr& expr, ir::NameUse& use) {
     return;
   }
   bind_arguments(function, use.arguments, expr.span);
+  if (function == bytecode::Function::kCFromScript) report_user_routine(expr.span);
   expr.node = ir::FunctionCall{function, std::move(use.arguments)};
+}
+
+/// Once in a project.
+void Binder::report_user_routine(const source::Span& span) {
+  if (project_.reported_elements.insert("cfromscript").second) diagnostics_.warning("PM5003", span, "CfromScript calls a C routine of the user, which the simulation cannot run; there this is a fault");
 }
 
 /// Every argument by its letter of the signature; optional ones that are missing become 1.
@@ -85,6 +91,7 @@ void Binder::bind_argument(ir::Expr& argument, char letter, std::string_view fun
   switch (letter) {
     case 'n':
     case 'N':
+    case 'c':
     case 't': return bind_value(argument);
     case 'f':
       if (!is_text(argument)) diagnostics_.error("PM3071", argument.span, fmt::format("argument {} of {} is a format in quotation marks", number, function));

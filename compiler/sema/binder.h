@@ -64,7 +64,10 @@ class Binder {
   void bind_routine_name(ir::Jump& node, const source::Span& span);
   void bind_named_call(ir::Call& node, const source::Span& span);
   void bind_program_name(ir::Expr& expr, bytecode::SymbolKind kind, std::string_view what);
+  void bind_arguments_of_call(std::vector<ir::ExprPtr>& arguments, std::vector<bool>& by_reference);
   void mark_references(std::vector<bool>& by_reference, std::vector<ir::ExprPtr>& arguments, const std::vector<ir::Parameter>& parameters, const source::Span& span, std::string_view name);
+  void check_returned(const ir::Expr& argument, std::string_view name);
+  void check_bare_number(const ir::Expr& number);
   void check_control_number(const ir::Control& node);
   void begin_buffer(ir::Buffer& buffer);
   void begin_routine(const std::vector<ir::Parameter>& parameters);
@@ -86,6 +89,7 @@ class Binder {
   bool is_function(std::string_view name) const;
   bool is_declared(std::string_view name) const;
   bool is_variable(std::string_view name) const;
+  void report_user_routine(const source::Span& span);
   void bind_function(ir::Expr& expr, ir::NameUse& use);
   void bind_arguments(bytecode::Function function, std::vector<ir::ExprPtr>& arguments, const source::Span& span);
   void bind_argument(ir::Expr& argument, char letter, std::string_view function, std::size_t number);

@@ -159,7 +159,7 @@ void Binder::bind(ir::Locals& node, const source::Span& span) {
 }
 
 void Binder::bind(ir::Jump& node, const source::Span& span) {
-  for (ir::ExprPtr& argument : node.arguments) bind_value(*argument);
+  bind_arguments_of_call(node.arguments, node.by_reference);
   if (node.kind != ir::JumpKind::kCallsub && !node.arguments.empty()) diagnostics_.error("PM3026", span, "only call and callsub take arguments");
   if (!node.name.empty()) bind_routine_name(node, span);
   if (!node.label) return;
@@ -183,18 +183,42 @@ void Binder::bind_routine_name(ir::Jump& node, const source::Span& span) {
   diagnostics_.error("PM3028", span, fmt::format("this buffer has no routine '{}'", node.name));
 }
 
+/// &P100 among the arguments of a call: the value comes back in it. What is called need not say so where its parameters are not known.
+void Binder::bind_arguments_of_call(std::vector<ir::ExprPtr>& arguments, std::vector<bool>& by_reference) {
+  by_reference.clear();
+  for (ir::ExprPtr& argument : arguments) {
+    auto* address = std::get_if<ir::AddressOf>(&argument->node);
+    by_reference.push_back(address != nullptr);
+    if (address) {
+      ir::ExprPtr place = std::move(address->place);
+      place->span = argument->span;
+      argument = std::move(place);
+    }
+    bind_value(*argument);
+    if (by_reference.back()) check_returned(*argument, "the call");
+  }
+}
+
+void Binder::check_returned(const ir::Expr& argument, std::string_view name) {
+  if (is_assignable(argument)) return;
+  diagnostics_.error("PM3035", argument.span, fmt::format("{} returns a value in this argument, so it must be a variable", name));
+}
+
 void Binder::mark_references(std::vector<bool>& by_reference, std::vector<ir::ExprPtr>& arguments, const std::vector<ir::Parameter>& parameters, const source::Span& span, std::string_view name) {
   if (arguments.size() != parameters.size())
     diagnostics_.error("PM3029", span, fmt::format("'{}' takes {} argument(s), not {}", name, parameters.size(), arguments.size()));
-  by_reference.assign(arguments.size(), false);
   for (std::size_t i = 0; i < std::min(arguments.size(), parameters.size()); ++i) {
+    if (by_reference[i] && !parameters[i].by_reference) {
+      auto& error = diagnostics_.error("PM3038", arguments[i]->span, fmt::format("'{}' returns nothing in '{}'; leave out the &, or declare it as &{}", name, parameters[i].name, parameters[i].name));
+      if (parameters[i].span.valid()) error.notes.push_back({parameters[i].span, "the parameter is declared here"});
+    }
+    if (!by_reference[i] && parameters[i].by_reference) check_returned(*arguments[i], fmt::format("'{}'", name));
     by_reference[i] = parameters[i].by_reference;
-    if (by_reference[i] && !is_assignable(*arguments[i])) diagnostics_.error("PM3035", arguments[i]->span, fmt::format("'{}' returns a value in this argument, so it must be a variable", name));
   }
 }
 
 void Binder::bind(ir::Call& node, const source::Span& span) {
-  for (ir::ExprPtr& argument : node.arguments) bind_value(*argument);
+  bind_arguments_of_call(node.arguments, node.by_reference);
   if (node.arguments.size() > bytecode::kMaxArguments) diagnostics_.error("PM3007", span, fmt::format("a call has at most {} arguments", bytecode::kMaxArguments));
   if (!node.name.empty()) return bind_named_call(node, span);
   bind_value(*node.number);
@@ -270,12 +294,23 @@ void Binder::bind(ir::Control& node, const source::Span&) {
     ir::ExprPtr& argument = node.arguments[i];
     if (!argument) continue;
     auto* use = std::get_if<ir::NameUse>(&argument->node);
+    const bool without_parentheses = use && argument->span.end - argument->span.begin == use->name.size();
+    const bool bare_number = without_parentheses && i == 0 && !use->has_arguments && !is_plc_verb(node.verb) && node.verb != ControlVerb::kReportPointer;
     if (use && is_plc_verb(node.verb) && !is_variable(use->name)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
     else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
     else if (use && node.verb == ControlVerb::kReportPointer) bind_program_name(*argument, SymbolKind::kPointer, "pointer");
     else bind_value(*argument);
+    if (bare_number) check_bare_number(*argument);
   }
   check_control_number(node);
+}
+
+/// kill m: the name of a local variable; of another one its value stands in parentheses.
+void Binder::check_bare_number(const ir::Expr& number) {
+  const auto* variable = std::get_if<ir::Variable>(&number.node);
+  if (!variable || (variable->variable_class == ir::VariableClass::kL && !variable->index)) return;
+  diagnostics_.error("PM3039", number.span, fmt::format("the number of a thing is a constant, a local variable, or an expression in parentheses: ({})", variable->name)).fix =
+      source::FixIt{number.span, "(" + variable->name + ")", source::FixSafety::kSuggestion, {}};
 }
 
 void Binder::check_control_number(const ir::Control& node) {

@@ -61,26 +61,25 @@ std::string CoordSystem::define(const bytecode::AxisDefinition& definition, int 
   for (const auto& row : definitions_) motors_.push_back(row.motor);
   const bool null = d.kind == kinematics::MotorDefinition::Kind::kNull;
   m.coord = null ? -1 : number_;
+  m.shares_with = number_;
+  m.spindle = d.kind == kinematics::MotorDefinition::Kind::kSpindle ? static_cast<Motor::Spindle>(definition.spindle + 1) : Motor::Spindle::kNo;
   m.in_use = m.in_use || !null;
   return {};
 }
 
 void CoordSystem::fail(double time_ms, Fault fault) {
+  const bool ends_on_path = fault.kind == FaultKind::kSoftLimit && on_path_ && lookahead_ && !limit_fault_;
+  if (ends_on_path) stop_at_limit(time_ms, std::move(fault));
+  else fail_at_once(time_ms, std::move(fault));
+}
+
+void CoordSystem::fail_at_once(double time_ms, Fault fault) {
   abort(time_ms);
   machine_.elements.set(ElementId::kCoordErrorStatus, error_status(fault.kind), static_cast<unsigned>(number_));
   machine_.report_fault({time_ms, number_, -1, std::move(fault)});
 }
 
-bytecode::SourceLine CoordSystem::line_in_motion(double time_ms) const {
-  if (phase_ == Phase::kRapid) return rapid_.source;
-  if (phase_ == Phase::kDwelling || phase_ == Phase::kHoming) return item_source_;
-  for (const ExecutedMove& move : executed_)
-    if (time_base_.time_at(move.timing.end_ms) > time_ms) return move.source;
-  if (on_path_ && !pending_moves_.empty()) return pending_moves_.front().source;
-  return runner_.thread.active() ? runner_.thread.source() : item_source_;
-}
-
-bytecode::SourceLine CoordSystem::line_at(double time_ms) const { return runner_.thread.active() ? runner_.thread.source() : line_in_motion(time_ms); }
+bytecode::SourceLine CoordSystem::line_at(double time_ms) const { return runner_.thread.active() ? runner_.thread.source() : executing_source(time_ms); }
 
 bool CoordSystem::executes(const bytecode::Program* program) const {
   return program_active() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);

@@ -84,25 +84,33 @@ class CoordSystem {
   /// Inside lookahead as fast as the motors' limits allow, otherwise a feed hold.
   std::string quick_stop(double time_ms);
   bool quick_stopped() const { return quick_stopped_ || shaping_ == Shaping::kSlower; }
+  /// Runs the stored path backwards, until a quick stop, forward(), or the end of what is stored.
+  std::string retrace(double time_ms);
+  std::string forward_on_path(double time_ms);
+  /// The path behind the place that the program has come to is run through, backwards or forwards.
+  bool retracing() const { return back_ms_ < 0 || back_rate_ != 0 || shaping_ == Shaping::kBack; }
+  bool runs_backwards() const { return back_rate_ < 0; }
   /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
   std::string set_time_base(double time_ms, double rate);
   const TimeBase& time_base() const { return time_base_; }
   /// A motor that belongs here gets a profile at time_ms: the clock it runs by.
   const TimeBase* clock_for_motion(double time_ms);
   void abort(double time_ms);
-  /// A run-time error: aborts, sets ErrorStatus and reports.
+  /// A run-time error: aborts, sets ErrorStatus and reports. A software limit ahead inside lookahead: the motion ends on the path at the
+  /// limit, then it is reported, and the program waits to be aborted.
   void fail(double time_ms, Fault fault);
+  void fail_at_once(double time_ms, Fault fault);
   bool program_running() const { return phase_ != Phase::kIdle && phase_ != Phase::kPaused; }
   /// Executing, or waiting to go on.
   bool program_active() const { return phase_ != Phase::kIdle; }
   /// Executing, and going on by itself: not held, not at 0 %.
   bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
+  /// Rate at which the path is run through, below 0 backwards; 1 is 100 %.
+  double path_rate(double time_ms) const { return time_base_.rate_at(time_ms) + back_rate_; }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
   Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
-  /// The line of the move, dwell or search that is being executed; where there is none, the line at which the program calculates.
-  bytecode::SourceLine line_in_motion(double time_ms) const;
   /// Where the program stands, for a message: at its calculation, or once that has ended, in motion.
   bytecode::SourceLine line_at(double time_ms) const;
   /// Where the program stood when it was aborted last; no program where it has run on since.
@@ -133,7 +141,11 @@ class CoordSystem {
   /// Motors that follow the pipeline: row i of position_mu gets count samples from start_ms on.
   bool on_path() const { return on_path_; }
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
+  /// The motors have followed the first kept of `count` samples that sample() gave. rows: [motors of used][kept], from home.
+  void follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu);
   const std::vector<int>& path_motors() const { return path_map_.motors; }
+  /// The line whose move, dwell or wait executes at the present time.
+  bytecode::SourceLine executing_source(double time_ms) const;
   /// Reports the moves that have begun and whose end is still to come: with the end that is planned where they go_on, else with time_ms.
   void report_unfinished(double time_ms, bool go_on);
 
@@ -150,15 +162,18 @@ class CoordSystem {
   /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
   const AxisVector& calculated_position() const { return program_uu_; }
   AxisVector commanded_position(double time_ms);
+  /// Where the motors are, and how far from where they are commanded to be.
+  AxisVector actual_position(double time_ms);
+  AxisVector following_error_uu(double time_ms);
   /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
   AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
   const motion::StageObservers& observers() const { return observers_; }
 
  private:
-  enum class Shaping { kNone, kSlower, kFaster };
+  enum class Shaping { kNone, kSlower, kFaster, kBack };
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
+  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd, kLimit };
 
   // control.cpp
   std::string start(double time_ms);
@@ -180,8 +195,17 @@ class CoordSystem {
   void begin_shaping(Shaping shaping);
   bool keeps_limits(double path_ms, double step_ms);
   double step_toward(double path_ms, double last_ms, double wanted_ms);
+  double step_by_slew(double last_ms, double wanted_ms) const;
   void shape_rate(double time_ms);
+  void run_step(double time_ms, double step_ms);
   void end_shaping(double time_ms);
+  double wanted_step_ms(double path_ms) const;
+
+  // retrace.cpp
+  double path_position(double time_ms) const;
+  void forget_retrace();
+  double history_wanted_ms() const;
+  double stored_ms() const;
 
   // program.cpp
   void calculate(double time_ms);
@@ -220,6 +244,7 @@ class CoordSystem {
   std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
                                         std::vector<motion::JogParameters>& parameters) const;
   void report_rapid(double time_ms);
+  std::vector<motion::GoverningShare> rapid_governed() const;
   void start_homing(double time_ms);
   void motors_arrived(double time_ms);
   void collect_timings();
@@ -234,7 +259,16 @@ class CoordSystem {
   std::optional<Fault> select_transform(double number, bytecode::SourceLine source);
   std::string rename_position();
 
+  // position_limits.cpp
+  bool has_position_limits() const;
+  std::optional<Fault> check_targets(const AxisVector& target_uu, bytecode::SourceLine source);
+  std::optional<Fault> limit_target(int motor, double& target_mu, bytecode::SourceLine source) const;
+  void stop_at_limit(double time_ms, Fault fault);
+  void stopped_at_limit(double time_ms);
+  void hold_at_limits(std::span<double> position_mu) const;
+
   // positions.cpp
+  AxisVector axes_at(double time_ms, bool actual);
   std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
   std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu);
 
@@ -257,6 +291,7 @@ class CoordSystem {
   AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
   bool stop_requested_ = false, pause_requested_ = false;
+  std::optional<Fault> limit_fault_;  // stopped, or stopping, on the path at a software limit: only abort ends it
   bool stepping_ = false;           // pauses after one item
   bool step_block_ = false;         // between bstart and bstop
   std::vector<double> paused_mu_;   // [motors_]
@@ -264,13 +299,17 @@ class CoordSystem {
   Shaping shaping_ = Shaping::kNone;      // quick stop, or going on after it
   bool quick_stopped_ = false;
   double shape_at_ms_ = kNever;           // next servo tick of it
+  double before_path_ms_ = 0;             // path position at the last shaped tick
   std::vector<double> before_mu_, here_mu_, there_mu_;   // [path motor] at the tick before, at this one, at one that is tried
+  bool shaped_by_slew_ = false;           // feed hold while retracing, and retracing without lookahead
+  double back_ms_ = 0, back_from_ms_ = 0, back_rate_ = 0;  // path position less the clock's, at a time; its rate
+  double retrace_to_ms_ = 0;              // path position at which retracing begins to stop
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
   motion::StageObservers observers_;
   bool on_path_ = false, lookahead_ = false;
-  double sampled_to_ms_ = 0, sequence_start_ms_ = 0;
+  double sequence_start_ms_ = 0;
   double calculated_at_ms_ = -kNever;  // last calculation pass
   int moves_without_time_ = 0;
   ProgramFrame frame_;

@@ -116,14 +116,28 @@ bool CoordSystem::axes_from_motors(std::span<const double> motor_mu, AxisVector&
   return !forward || forward_routine(motor_mu, axis_uu).empty();
 }
 
-AxisVector CoordSystem::commanded_position(double time_ms) {
+/// Program coordinates of the motors' commanded or actual positions.
+AxisVector CoordSystem::axes_at(double time_ms, bool actual) {
   std::array<double, bytecode::kMaxMotors> motor_mu{};
-  for (int motor : motors_) motor_mu[static_cast<std::size_t>(motor)] = machine_.motors[static_cast<std::size_t>(motor)].position_at(time_ms);
+  for (int motor : motors_) {
+    const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    motor_mu[static_cast<std::size_t>(motor)] = actual ? m.actual_at(time_ms) : m.position_at(time_ms);
+  }
   AxisVector axis_uu = calculated_uu_;
   axes_from_motors(motor_mu, axis_uu);
   AxisVector unknown;
   unknown.fill(std::nan(""));
   return frame_.to_program(machine_.elements, axis_uu).value_or(unknown);
+}
+
+AxisVector CoordSystem::commanded_position(double time_ms) { return axes_at(time_ms, false); }
+AxisVector CoordSystem::actual_position(double time_ms) { return axes_at(time_ms, true); }
+
+AxisVector CoordSystem::following_error_uu(double time_ms) {
+  AxisVector error = axes_at(time_ms, false);
+  const AxisVector actual = axes_at(time_ms, true);
+  for (std::size_t axis = 0; axis < error.size(); ++axis) error[axis] -= actual[axis];
+  return error;
 }
 
 AxisVector CoordSystem::commanded_velocity_uu_ms(double time_ms) {

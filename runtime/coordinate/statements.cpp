@@ -234,13 +234,15 @@ std::optional<Fault> CoordSystem::add_compensated() {
 
 std::optional<Fault> CoordSystem::add_to_path(motion::MotionCommand command) {
   if (auto fault = place(command)) return fault;
-  if (auto fault = pipeline_.add(command)) return fault;
+  if (auto fault = check_targets(command.target_uu, command.source)) return fault;
+  auto fault = pipeline_.add(command);
+  if (fault && fault->kind != FaultKind::kSoftLimit) return fault;   // a path that ends at a limit has part of the move
   if (++moves_without_time_ > kMaxMovesWithoutTime)
     return Fault{FaultKind::kRunTime, command.source, fmt::format("{} moves in a row took no time; the program does not come on", kMaxMovesWithoutTime)};
   calculated_uu_ = pipeline_.calculated_position();
   const bool delay = command.kind == motion::CommandKind::kDelay;
   pending_moves_.push_back({command.id, delay ? "delay" : command.added ? "added" : move_mode_name(command.mode), command.source});
-  return std::nullopt;
+  return fault;
 }
 
 std::optional<Fault> CoordSystem::refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const {

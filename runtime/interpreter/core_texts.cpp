@@ -125,7 +125,8 @@ bool InterpreterCore::memory_function(const Instruction& in, double* r, std::int
   std::int64_t work = 0;
   calling_ = bytecode::function_info(function).name;
   bool worked = false;
-  if (function <= Function::kVmadd) worked = vector_function(function, x, result, work);
+  if (function == Function::kCFromScript) worked = refuse_memory("it is a C routine of the user, which is not simulated");
+  else if (function <= Function::kVmadd) worked = vector_function(function, x, result, work);
   else if (function <= Function::kMtrans) worked = matrix_function(function, x, result, work);
   else if (function <= Function::kTprop) worked = transform_function(function, x, result);
   else if (function == Function::kSprintf) worked = print_function(x, result);

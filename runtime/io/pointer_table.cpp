@@ -18,7 +18,7 @@ std::string definition_text(const bytecode::PointerDefinition& definition, const
   const bool whole_word = definition.start_bit == 0 && definition.width == 32;
   const std::string field = fmt::format(".{}.{}", definition.start_bit, definition.width);
   switch (definition.kind) {
-    case PointerKind::kSelf: return "*";
+    case PointerKind::kSelf: return definition.has_field ? fmt::format("*{}.{}", definition.is_signed ? 'i' : 'u', definition.width) : "*";
     case PointerKind::kIo: return fmt::format("{}.io:${:X}{}", sign, definition.address, field);
     case PointerKind::kUserInteger: return fmt::format("{}.user:{}{}", sign, definition.address, whole_word ? "" : field);
     case PointerKind::kUserFloat: return fmt::format("f.user:{}", definition.address);

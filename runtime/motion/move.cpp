@@ -83,6 +83,20 @@ double programmed_time_ms(const MotionCommand& command, const Arc& arc, double l
   return time_ms;
 }
 
+/// What made programmed_time_ms() what it is.
+TimeRule rule_of(const MotionCommand& command, const Arc& arc, double length_uu, double time_ms, const PipelineConfig& config) {
+  if (command.kind == CommandKind::kDelay) return time_ms > command.move_time_ms ? TimeRule::kSegment : TimeRule::kOwnTime;
+  if (command.feed_uu == 0) return TimeRule::kMoveTime;
+  if (command.inverse_time) return TimeRule::kInverseTime;
+  const double feed = feed_in_effect(command, arc, length_uu, config);
+  const double second_uu = norm(arc.curve.delta, command.feed_axes2 & ~circle_axes_of(arc.curve) & arc.curve.moved);
+  const bool by_feed = time_ms <= std::max(length_uu, second_uu) / feed * command.feed_time_ms;
+  if (!by_feed) return command.alt_feed_uu > 0 ? TimeRule::kAltFeedRate : TimeRule::kFeed;
+  if (second_uu > length_uu) return TimeRule::kSecondFeedAxes;
+  if (feed >= command.feed_uu) return TimeRule::kFeed;
+  return config.max_feed_uu > 0 && feed == config.max_feed_uu ? TimeRule::kMaxFeedRate : TimeRule::kMaxCirAccel;
+}
+
 /// Shortest time at which no motor is above its MaxSpeed, unsegmented.
 double time_for_max_speed_ms(const Move& move, const PipelineConfig& config) {
   double time_ms = 0;
@@ -185,6 +199,7 @@ Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start
   move.entry = move.exit = {0, 0};
   move.no_blend = false;
   move.pvt = true;
+  move.rule = TimeRule::kOwnTime;
   move.time_ms = time_ms;
   move.length_uu = norm(curve.delta, command.feed_axes & curve.moved);
   move.curve = std::make_shared<const Curve>(std::move(curve));
@@ -226,9 +241,13 @@ Result<Move> make_move(const MotionCommand& command, const AxisVector& start, co
   move.curve = std::make_shared<const Curve>(arc.curve);
   move.length_uu = command.kind == CommandKind::kDelay ? 0 : feed_length(arc, command);
   const double programmed_ms = programmed_time_ms(command, arc, move.length_uu, context.config);
+  move.rule = rule_of(command, arc, move.length_uu, programmed_ms, context.config);
   if (move.length_uu == 0) move.length_uu = longest(arc.curve, ~0u);
   move.time_ms = std::max(programmed_ms, time_for_max_speed_ms(move, context.config));
+  if (move.time_ms > programmed_ms) move.rule = TimeRule::kMotorSpeed;
+  const double without_ramps_ms = move.time_ms;
   move.time_ms = time_with_room_for_ramps(move, move.time_ms, context.config);
+  if (move.time_ms > without_ramps_ms) move.rule = TimeRule::kRamps;
   if (auto fault = too_long(move, command.source, context.config)) return *fault;
   if (move.time_ms == 0 && move.curve->moved != 0)
     return Fault{FaultKind::kBadTarget, command.source, "the move takes no time; set tm, ta or a feed rate"};

@@ -29,7 +29,7 @@ void Timings::start_sequence(double start_ms) {
 }
 
 void Timings::add(const MoveBegin& begin) {
-  Record record{begin.id, begin.length_uu, {begin.sync_ms, 0, true}, {begin.start_ms, 0, true}, {}};
+  Record record{begin.id, begin.length_uu, {begin.sync_ms, 0, true}, {begin.start_ms, 0, true}, {}, begin.rule};
   ++unknown_starts_;
   cover_now(record.sync);
   cover_now(record.start);
@@ -114,7 +114,7 @@ void Timings::deliver() {
     sync_times_.push_back({records_[sync_delivered_].id, records_[sync_delivered_].sync.time_ms});
   while (!records_.empty() && records_.front().sync.known && records_.front().start.known && records_.front().end.known) {
     const Record& record = records_.front();
-    finished_.push_back({record.id, record.sync.time_ms, record.start.time_ms, record.end.time_ms, record.length_uu});
+    finished_.push_back({record.id, record.sync.time_ms, record.start.time_ms, record.end.time_ms, record.length_uu, record.rule});
     records_.pop_front();
     --sync_delivered_;
   }

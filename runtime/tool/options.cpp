@@ -13,7 +13,7 @@ constexpr const char* kFooter = R"(Examples:
   pmac-run laser.pmc -e 'LoopCtrlInput=1 &1 b3r' --at 2.5 'LoopCtrlInput=0' --json
   pmac-run moves.pmc -e '&1 b1r' --emit=path
 
-Exit codes: 0 ok, 1 errors in the program, 2 usage or unreadable file, 3 simulated fault or refused command,
+Exit codes: 0 ok, 1 errors in the program, 2 usage or unreadable file, 3 simulated fault, limit or refused command,
 4 time or instruction limit reached, 70 internal error, 130 interrupted.)";
 
 constexpr double kMaxSeconds = 1e9;
@@ -44,6 +44,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--plot", o.plots, "draw path and motion to a .svg, .png or .html file")->type_name("FILE")->allow_extra_args(false);
   app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo"}));
   app.add_flag("--stats", o.stats, "print times, speeds and accelerations at the end");
+  app.add_flag("--check-limits", o.check_limits, "hold every servo sample to the motors' limits; exit 3 where one is exceeded");
   app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
   app.add_option("--fine", fine, "fine interpolation between segments")->check(CLI::IsMember({"through", "bspline"}))->capture_default_str();
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();

@@ -24,7 +24,7 @@ struct RunOptions {
   std::string record, gather;
   std::vector<std::string> plots;
   std::string emit;
-  bool stats = false, quiet = false;
+  bool stats = false, check_limits = false, quiet = false;
   bool console = false, realtime = false;
   double console_step_ms = 10;                                // simulated time that passes after a line of the console
   JsonDetail json = JsonDetail::kNone;

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/tool/limit_report.h"
+
 namespace pmac::tool {
 namespace {
 
@@ -25,6 +27,7 @@ ordered_json move_json(const runtime::Machine& machine, const runtime::MoveRecor
   j["start_s"] = move.start_ms / 1000.0;
   j["end_s"] = move.end_ms / 1000.0;
   j["length"] = move.length;
+  if (!move.governed.empty()) j["governed"] = governed_json(move);
   return j;
 }
 
@@ -33,6 +36,7 @@ ordered_json fault_json(const runtime::Machine& machine, const runtime::FaultRec
   put_source(j, machine, record.fault.source);
   if (record.coord >= 0) j["coord"] = record.coord;
   if (record.plc >= 0) j["plc"] = record.plc;
+  if (record.motor >= 0) j["motor"] = record.motor;
   j["time_s"] = record.time_ms / 1000.0;
   j["error_status"] = runtime::error_status(record.fault.kind);
   j["text"] = record.fault.detail;
@@ -101,6 +105,7 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
   j["motors"] = ordered_json::object();
   for (const auto& row : statistics.rows())
     j["motors"][std::to_string(row.motor)] = {{"final", row.final_mu}, {"max_speed", row.max_speed_mu_ms}, {"max_accel", row.max_accel_mu_ms2}};
+  if (!limits_.empty()) j["limits"] = limit_json(machine, limits_);
   if (detail == JsonDetail::kMoves) {
     j["outputs"] = ordered_json::array();
     for (const auto& change : outputs_) {
@@ -126,6 +131,18 @@ std::string Report::text(const runtime::Machine& machine, const runtime::RunOutc
   for (const auto& r : statistics.rows())
     out += fmt::format("{:>5} {:>15.6g} {:>15.6g} {:>15.6g} {:>11.6g} {:>8.4f} {:>12.6g} {:>8.4f}\n", r.motor, r.final_mu, r.min_mu, r.max_mu,
                        r.max_speed_mu_ms, r.max_speed_at_ms / 1000.0, r.max_accel_mu_ms2, r.max_accel_at_ms / 1000.0);
+  return out;
+}
+
+std::string Report::move_log(const runtime::Machine& machine) const {
+  constexpr std::size_t kShown = 1000;
+  std::vector<runtime::MoveRecord> ordered = moves_;
+  std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.start_ms < b.start_ms; });
+  std::string out = ordered.empty() ? "" : "move               from s        to s  governed by\n";
+  for (std::size_t i = 0; i < std::min(ordered.size(), kShown); ++i)
+    out += fmt::format("{:<12} {:>12.6f} {:>11.6f}  {}  ({})\n", ordered[i].mode, ordered[i].start_ms / 1000, ordered[i].end_ms / 1000,
+                       governed_text(ordered[i]), machine.place(ordered[i].source));
+  if (ordered.size() > kShown) out += fmt::format("and {} more moves; --stats --json tells all of them\n", ordered.size() - kShown);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/machine.h"
+#include "runtime/servo/limit_check.h"
 #include "runtime/servo/servo.h"
 #include "runtime/tool/options.h"
 
@@ -20,6 +21,8 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+  /// Of --check-limits, when the run is over.
+  void add_limits(std::vector<runtime::LimitCheck::Row> rows) { limits_ = std::move(rows); }
   /// True for the first one of its kind; the others are counted. Beyond kMostRefusals kinds they are counted together.
   bool add_refusal(const std::string& command, const std::string& reason);
 
@@ -31,6 +34,8 @@ class Report {
                    double wall_s) const;
   /// A line for every refusal that came again, with its count.
   std::string repeated_refusals() const;
+  /// Every move with what governed it, a line each; the first ones where there are many.
+  std::string move_log(const runtime::Machine& machine) const;
   /// The log of output changes, a line each.
   std::string output_log(const runtime::Machine& machine) const;
   /// Commands that were refused, other than those of the console, which are answered there.
@@ -48,6 +53,7 @@ class Report {
   std::vector<Refusal> refusals_;                                              // in order of their first time
   std::map<std::pair<std::string, std::string>, std::size_t> refusal_index_;   // by command and reason, into refusals_
   std::size_t more_refusals_ = 0;                                              // beyond kMostRefusals
+  std::vector<runtime::LimitCheck::Row> limits_;
 };
 
 /// "idle", "until", "fault", "time-limit" or "budget".

@@ -91,7 +91,10 @@ std::vector<ir::ExprPtr> Lowering::lower_number_list(P::NumberListContext* list)
     return numbers;
   }
   for (P::NumberItemContext* item : list->numberItem()) {
-    if (item->expression()) numbers.push_back(lower_expression(item->expression()));
+    if (item->expression()) {
+      numbers.push_back(lower_expression(item->expression()));
+      numbers.back()->span = span_of(item);  // with its parentheses
+    } else if (item->NAME()) numbers.push_back(std::make_unique<ir::Expr>(ir::Expr{span_of(item), ir::NameUse{text_of(token_of(item->NAME())), false, {}}}));
     else if (item->STAR()) numbers.push_back(ir::make_number(std::numeric_limits<double>::infinity(), span_of(item)));
     else if (item->NUMBER().size() == 1) numbers.push_back(lower_number(token_of(item->NUMBER(0))));
     else if (item->NUMBER().size() == 2) append_range(token_of(item->NUMBER(0)), token_of(item->NUMBER(1)), span_of(item), numbers);

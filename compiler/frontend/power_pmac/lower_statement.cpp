@@ -244,6 +244,29 @@ void Lowering::lower_declaration(P::DeclarationContext* declaration, ir::Body& o
   out.push_back(ir::make_stmt(span, std::move(globals)));
 }
 
+/// The numbers of .12.1 behind an element or *i.
+std::vector<std::uint64_t> Lowering::bit_numbers(P::PointerTargetContext* target) {
+  std::vector<std::uint64_t> numbers;
+  for (antlr4::tree::TerminalNode* bit : target->NUMBER()) {
+    const std::string text = text_of(token_of(bit));
+    for (const std::uint64_t n : dotted_numbers(std::string_view(text).substr(text.starts_with('.') ? 1 : 0))) numbers.push_back(n);
+  }
+  return numbers;
+}
+
+/// *d and *f hold a double, *i.16 an integer of 16 bits, *u.16 one without sign.
+void Lowering::set_self_format(P::PointerTargetContext* target, bytecode::PointerDefinition& definition) {
+  const std::string letter = lower_case(text_of(token_of(target->SELF_FORMAT())));
+  const std::vector<std::uint64_t> numbers = bit_numbers(target);
+  const bool is_real = letter == "d" || letter == "f";
+  const std::uint64_t width = numbers.empty() ? 32 : numbers.back();
+  const bool valid = is_real ? numbers.empty() : numbers.size() <= 1 && width >= 1 && width <= 32;
+  if (!valid) return void(diagnostics_.error("PM3004", span_of(target), "a variable of its own is *, *d, or *i.width and *u.width with a width of 1 to 32 bits"));
+  definition.has_field = !is_real;
+  definition.is_signed = letter == "i" || letter == "s";
+  definition.width = static_cast<std::uint8_t>(width);
+}
+
 ir::StmtPtr Lowering::lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition) {
   ir::DefinePointer result;
   result.definition = std::move(definition);
@@ -260,19 +283,16 @@ ir::StmtPtr Lowering::lower_pointer(P::PointerTargetContext* target, source::Spa
       return ir::make_stmt(span, std::move(result));
     }
     result.definition.kind = *kind;
-    result.definition.is_signed = text[0] == 's';
+    result.definition.is_signed = text[0] == 's' || text[0] == 'i';
     result.definition.address = static_cast<std::uint32_t>(numbers[0]);
     result.definition.start_bit = static_cast<std::uint8_t>(start);
     result.definition.width = static_cast<std::uint8_t>(width);
+  } else if (target && target->SELF_FORMAT()) {
+    set_self_format(target, result.definition);
   } else if (target && target->reference()) {
     result.definition.kind = bytecode::PointerKind::kElement;
     result.element = lower_reference(target->reference());
-    const auto bits = target->NUMBER();
-    std::vector<std::uint64_t> numbers;
-    for (antlr4::tree::TerminalNode* bit : bits) {
-      const std::string text = text_of(token_of(bit));
-      for (const std::uint64_t n : dotted_numbers(std::string_view(text).substr(text.starts_with('.') ? 1 : 0))) numbers.push_back(n);
-    }
+    const std::vector<std::uint64_t> numbers = bit_numbers(target);
     result.definition.has_field = !numbers.empty();
     const std::uint64_t start = numbers.empty() ? 0 : numbers[0];
     const std::uint64_t width = numbers.size() > 1 ? numbers[1] : numbers.empty() ? 32 : 1;

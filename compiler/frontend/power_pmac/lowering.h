@@ -46,6 +46,8 @@ class Lowering {
   ir::StmtPtr lower_jump(P::SimpleStatementContext* statement);
   ir::StmtPtr lower_call(P::SimpleStatementContext* statement);
   void lower_declaration(P::DeclarationContext* declaration, ir::Body& out);
+  std::vector<std::uint64_t> bit_numbers(P::PointerTargetContext* target);
+  void set_self_format(P::PointerTargetContext* target, bytecode::PointerDefinition& definition);
   ir::StmtPtr lower_pointer(P::PointerTargetContext* target, source::Span span, bytecode::PointerDefinition definition);
   void lower_label(P::LabelContext* label, ir::Body& out);
   void lower_axis_query(P::SimpleStatementContext* statement, ir::Body& out);

@@ -4,7 +4,7 @@
 //   - LINE_END is put behind a line with cexec, cskip or cx, which act on the rest of their line;
 //   - C, I and R become AXIS, VECTOR and RADIUS where they are words of a move and not variables, M and D become CODE likewise;
 //     what they are shows by the assignment operator behind their number;
-//   - the words of normal and pset get types of their own;
+//   - the words of normal and pset get types of their own, so does the letter of ->*i.16;
 //   - & between operands becomes BIT_AND; elsewhere it addresses a coordinate system or a variable;
 //   - an else that an if follows becomes ELSE_IF;
 //   - an operator that begins a line, outside parentheses and not after another operator, is no binary operator: & addresses a
@@ -58,6 +58,7 @@ class TokenPass {
     const std::size_t type = in_type_ = in_[at_]->getType();
     const bool new_line = in_[at_]->getLine() != before_line_;
     end_line(type, new_line);
+    if (is_self_format(new_line)) set_type(T::SELF_FORMAT);
     if (type == T::ELSE && at_ + 1 < in_.size() && in_[at_ + 1]->getType() == T::IF) set_type(T::ELSE_IF);
     if (type == T::OPEN) in_buffer_ = true;
     if (type == T::CLOSE) in_buffer_ = false;
@@ -75,6 +76,14 @@ class TokenPass {
     const bool is_other = in_[at_]->getType() == T::OTHER;
     if (!is_other && (type == T::LEFT || type == T::LEFT_BRACKET)) ++depth_;
     if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && depth_ > 0) --depth_;
+  }
+
+  /// The i of ->*i.16, glued to the *.
+  bool is_self_format(bool new_line) const {
+    const bool behind_self = before_ == T::STAR && out_.size() >= 2 && out_[out_.size() - 2]->getType() == T::ARROW;
+    if (!behind_self || new_line || last_stop_ + 1 != in_[at_]->getStartIndex()) return false;
+    const std::string text = in_[at_]->getText();
+    return text.size() == 1 && std::string_view("usifdUSIFD").find(text[0]) != std::string_view::npos;
   }
 
   /// Puts LINE_END where the line of a cexec, cskip or cx ends: at the line's end, outside of braces that it has opened.

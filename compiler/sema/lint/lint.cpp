@@ -10,6 +10,7 @@ void lint(const std::vector<ir::Unit>& units, const Project& project, source::Di
       lint_motion(buffer, diagnostics);
     }
   }
+  lint_loops(units, project, diagnostics);
   lint_circles(units, project, diagnostics);
   lint_names(units, project, diagnostics);
 }

@@ -14,11 +14,13 @@ void lint(const std::vector<ir::Unit>& units, const Project& project, source::Di
 
 /// Local variables and parameters that nothing reads (lint_locals.cpp).
 void lint_locals(const ir::Buffer& buffer, source::Diagnostics& diagnostics);
-/// Statements that are never reached, cases that fall through, conditions and assignments without effect, loops without end, labels
-/// without jump (lint_flow.cpp).
+/// Statements that are never reached, cases that fall through, conditions and assignments without effect, labels without jump
+/// (lint_flow.cpp).
 void lint_flow(const ir::Buffer& buffer, source::Diagnostics& diagnostics);
 /// Waits and synchronous assignments where they do nothing, outputs that come early, moves without a mode (lint_motion.cpp).
 void lint_motion(const ir::Buffer& buffer, source::Diagnostics& diagnostics);
+/// Loops without end, and loops that wait where nothing can happen (lint_loops.cpp).
+void lint_loops(const std::vector<ir::Unit>& units, const Project& project, source::Diagnostics& diagnostics);
 /// Circles where the set-up switches no segmentation on (lint_motion.cpp).
 void lint_circles(const std::vector<ir::Unit>& units, const Project& project, source::Diagnostics& diagnostics);
 /// Variables used by a number that belongs to a declared name (lint_names.cpp).

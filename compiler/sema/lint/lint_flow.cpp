@@ -38,12 +38,6 @@ bool has_macro(const ir::Expr& expr) {
   return found;
 }
 
-bool may_change_anything(const ir::Stmt& statement) {
-  return std::holds_alternative<ir::Break>(statement.node) || std::holds_alternative<ir::Jump>(statement.node) || std::holds_alternative<ir::Return>(statement.node) ||
-         std::holds_alternative<ir::Stop>(statement.node) || std::holds_alternative<ir::Call>(statement.node) || std::holds_alternative<ir::CodeLine>(statement.node) ||
-         std::holds_alternative<ir::LineCondition>(statement.node) || std::holds_alternative<ir::Label>(statement.node) || std::holds_alternative<ir::ReadWords>(statement.node);
-}
-
 class FlowLint {
  public:
   FlowLint(const ir::Buffer& buffer, source::Diagnostics& diagnostics) : buffer_(buffer), diagnostics_(diagnostics) {}
@@ -65,8 +59,6 @@ class FlowLint {
     if (const auto* block = std::get_if<ir::Block>(&statement.node)) check_reach(block->body, {});
     else if (const auto* selection = std::get_if<ir::Switch>(&statement.node)) check_switch(*selection);
     else if (const auto* branch = std::get_if<ir::If>(&statement.node)) check_if(*branch);
-    else if (const auto* loop = std::get_if<ir::While>(&statement.node)) check_loop(*loop->condition, *loop->body);
-    else if (const auto* repeat = std::get_if<ir::DoWhile>(&statement.node)) check_loop(*repeat->condition, *repeat->body);
     else if (const auto* assign = std::get_if<ir::Assign>(&statement.node)) check_assignment(*assign, statement.span);
   }
 
@@ -123,27 +115,6 @@ class FlowLint {
     const bool compares_itself = binary && ir::is_comparison(binary->op) && same_variable(*binary->left, *binary->right);
     if (compares_itself) diagnostics_.warning("PM7013", condition.span, "this compares a variable with itself");
     else if (compares_constants || ir::constant_value(condition)) diagnostics_.warning("PM7013", condition.span, "this condition is always the same");
-  }
-
-  /// The condition depends on local variables alone, and the body changes none of them.
-  void check_loop(const ir::Expr& condition, const ir::Stmt& body) {
-    std::set<std::int64_t> locals;
-    bool certain = true;
-    ir::walk(condition, ir::Use::kRead, {{}, [&](const ir::Expr& part, ir::Use) {
-                                          const auto* variable = std::get_if<ir::Variable>(&part.node);
-                                          const bool is_local = variable && variable->variable_class == ir::VariableClass::kL && !variable->index && !variable->name.empty();
-                                          if (is_local) locals.insert(variable->number);
-                                          const bool harmless = is_local || std::holds_alternative<ir::Number>(part.node) || std::holds_alternative<ir::Binary>(part.node) || std::holds_alternative<ir::Unary>(part.node);
-                                          certain = certain && harmless;
-                                        }});
-    if (!certain || locals.empty()) return;
-    ir::walk(body, {[&](const ir::Stmt& statement) { certain = certain && !may_change_anything(statement); },
-                    [&](const ir::Expr& part, ir::Use use) {
-                      const auto* variable = std::get_if<ir::Variable>(&part.node);
-                      if (use == ir::Use::kRead || !variable || variable->variable_class != ir::VariableClass::kL) return;
-                      certain = certain && !variable->index && !locals.contains(variable->number);
-                    }});
-    if (certain) diagnostics_.warning("PM7003", condition.span, "nothing in this loop changes what its condition depends on; once begun it never ends");
   }
 
   void check_assignment(const ir::Assign& assign, const source::Span& span) {
