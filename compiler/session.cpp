@@ -89,6 +89,7 @@ void Session::adopt(const bytecode::Module& module) {
     state_->project.names.adopt(symbol);
     if (symbol.kind == bytecode::SymbolKind::kMacro) state_->frontend.define(symbol.name, symbol.text);
     else state_->frontend.know_name(symbol.name);
+    if (symbol.kind == bytecode::SymbolKind::kProg) state_->frontend.know_program(symbol.name);
   }
   state_->has_programs = state_->has_programs || module.programs.size() > module.load_order.size();
 }

@@ -41,7 +41,7 @@ tokens {
   DEFAULT, DELAY, DO, DREAD, DWELL, ELSE, FRAX, FRAX2, FREAD, GOSUB, GOTO, IF, INC, LINEAR, NOFRAX, NOFRAX2, NORMAL, PCLR, PLOAD,
   PREAD, PSET, PSTORE, PVT, RAPID, READ, RETURN, SPLINE, STOP, SWITCH, TA, TD, TM, TREAD, TS, TSD, TSEL, VREAD, WHILE,
   // keywords of on-line commands; COMMAND is one that takes no argument (r, run, q, hm, ...)
-  COMMAND, ON_B, ON_J, ON_OUT, CLEAR, CX, DEFINE, DELETE, LOOKAHEAD, ECHO, OTHER_COMMAND, ALL
+  COMMAND, ON_B, ON_J, ON_OUT, CLEAR, CX, DEFINE, DELETE, LOOKAHEAD, ECHO, LIST, OTHER_COMMAND, ALL
 }
 
 // --- a load stream --------------------------------------------------------------------------------------------------------
@@ -219,7 +219,7 @@ programControl
   | SEND NUMBER? ','? STRING (',' argument)*
   | SENDALLCMDS
   ;
-startItem : NUMBER (':' programName)? | ':' programName | NAME ;
+startItem : NUMBER ('..' NUMBER)? (':' programName)? | ':' programName | NAME ;
 programName : NUMBER | NAME ;
 numberList : numberItem (',' numberItem)* ;
 numberItem : NUMBER ('..' NUMBER)? | {numberNameFollows()}? NAME | '(' expression ')' | '*' ;
@@ -258,8 +258,18 @@ online
   | ECHO NUMBER?
   | LINE_PERCENT ({sameLine()}? data)?
   | single=('?' | '\\' | '$' | RESET)
-  | OTHER_COMMAND ({!restEnds()}? ~(EOF | ';'))* {restEnds()}?
+  | LIST ({sameLine()}? listed)?
+  | OTHER_COMMAND restOfLine
   | programControl
+  ;
+
+restOfLine : ({!restEnds()}? ~(EOF | ';'))* {restEnds()}? ;
+
+/// A buffer; or the place of a program (pc, apc), with the number of lines behind a comma.
+listed
+  : kind=(PROG | PLC | SUBPROG) ({sameLine()}? bufferName)?
+  | kind=(FORWARD | INVERSE | ROTARY) ({sameLine()}? ('(' NUMBER ')' | NUMBER))?
+  | NAME ({sameLine()}? ',' ({sameLine()}? NUMBER)?)?
   ;
 
 /// First, count, step: I5213,15,100=10.

@@ -7,7 +7,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
-#include "runtime/state.h"
+#include "runtime/answer.h"
 #include "runtime/value_text.h"
 
 namespace pmac::runtime {
@@ -17,28 +17,38 @@ using bytecode::ControlVerb;
 using bytecode::ElementId;
 using Kind = kinematics::MotorDefinition::Kind;
 
-struct StatusBit { int bit; ElementId id; };
-constexpr StatusBit kMotorBits[] = {
-#define MOTOR_STATUS_BIT(bit, name) {bit, ElementId::kMotor##name},
-#define COORD_STATUS_BIT(bit, name)
+struct StatusBits { int bit, width; ElementId id; };
+constexpr StatusBits kMotorBits[] = {
+#define MOTOR_STATUS(bit, width, name) {bit, width, ElementId::kMotor##name},
+#define COORD_STATUS(bit, width, name)
+#define ANY_MOTOR_STATUS(bit, name)
+#define SYS_STATUS(bit, width, name)
 #include "runtime/status_bit.def"
-#undef MOTOR_STATUS_BIT
-#undef COORD_STATUS_BIT
 };
-constexpr StatusBit kCoordBits[] = {
-#define MOTOR_STATUS_BIT(bit, name)
-#define COORD_STATUS_BIT(bit, name) {bit, ElementId::kCoord##name},
+constexpr StatusBits kCoordBits[] = {
+#define MOTOR_STATUS(bit, width, name)
+#define COORD_STATUS(bit, width, name) {bit, width, ElementId::kCoord##name},
+#define ANY_MOTOR_STATUS(bit, name) {bit, 1, ElementId::kCoord##name},
+#define SYS_STATUS(bit, width, name)
 #include "runtime/status_bit.def"
-#undef MOTOR_STATUS_BIT
-#undef COORD_STATUS_BIT
+};
+constexpr StatusBits kSystemBits[] = {
+#define MOTOR_STATUS(bit, width, name)
+#define COORD_STATUS(bit, width, name)
+#define ANY_MOTOR_STATUS(bit, name)
+#define SYS_STATUS(bit, width, name) {bit, width, ElementId::kSys##name},
+#include "runtime/status_bit.def"
 };
 
-/// The 64-bit status word; the lower half, which the simulation does not compute, is 0.
-std::string status_word(Machine::State& s, Runner& runner, std::span<const StatusBit> bits, int number) {
-  std::uint32_t word = 0;
-  for (const StatusBit& b : bits)
-    if (read_element_value(s, runner, {b.id, {static_cast<std::uint32_t>(number), 0, 0}}) != 0) word |= 1u << b.bit;
-  return fmt::format("${:08x}{:08x}", word, 0);
+std::uint64_t status_word(Machine::State& s, Runner& runner, std::span<const StatusBits> bits, int number) {
+  std::uint64_t word = 0;
+  for (const StatusBits& b : bits) {
+    const double value = read_element_value(s, runner, {b.id, {static_cast<std::uint32_t>(number), 0, 0}});
+    const double room = static_cast<double>(1u << b.width);
+    const std::uint64_t part = b.width == 1 ? (value != 0 ? 1 : 0) : value > 0 && value < room ? static_cast<std::uint64_t>(value) : 0;
+    word |= part << b.bit;
+  }
+  return word;
 }
 
 // --- axis definitions -----------------------------------------------------------------------------------------------------
@@ -65,13 +75,10 @@ std::string definition_text(const kinematics::MotorDefinition& d, Motor::Spindle
 }
 
 /// With the coordinate system where it is another one than the addressed one.
-std::string axis_definition(Machine::State& s, const Runner& runner, const Motor& m) {
-  if (m.coord < 0) return fmt::format("#{}->0", m.number);
-  const auto& definitions = s.coord(m.coord).map().definitions();
-  const auto found = std::find_if(definitions.begin(), definitions.end(), [&](const auto& d) { return d.motor == m.number; });
-  const std::string text = found == definitions.end() ? "0" : definition_text(*found, m.spindle);
-  const std::string where = m.coord == runner.thread.coord || text == "0" ? "" : fmt::format("&{}", m.coord);
-  return fmt::format("{}#{}->{}", where, m.number, text);
+std::string axis_answer(Machine::State& s, const Runner& runner, const Motor& m) {
+  const std::string text = axis_definition_text(s, m);
+  const std::string where = m.coord < 0 || m.coord == runner.thread.coord || text == "0" ? "" : fmt::format("&{}", m.coord);
+  return definition_answer(s, fmt::format("{}#{}", where, m.number), text);
 }
 
 // --- coordinate systems -------------------------------------------------------------------------------------------------------
@@ -106,7 +113,7 @@ std::string coord_answer(Machine::State& s, Runner& runner, ControlVerb verb, in
       for (std::size_t axis = 0; axis < distance.size(); ++axis) distance[axis] -= now[axis];
       return axes_text(c, distance);
     }
-    default: return status_word(s, runner, kCoordBits, number);
+    default: return fmt::format("${:016x}", status_word(s, runner, kCoordBits, number));
   }
 }
 
@@ -116,8 +123,8 @@ std::string motor_answer(Machine::State& s, Runner& runner, ControlVerb verb, co
     case ControlVerb::kReportDesired: return double_text(m.position_at(s.now_ms));
     case ControlVerb::kReportVelocity: return double_text(m.actual_velocity_at(s.now_ms, s.period_ms()));
     case ControlVerb::kReportFollowingError: return double_text(m.following_error_mu());
-    case ControlVerb::kReportAxisDefinition: return axis_definition(s, runner, m);
-    default: return status_word(s, runner, kMotorBits, m.number);
+    case ControlVerb::kReportAxisDefinition: return axis_answer(s, runner, m);
+    default: return fmt::format("${:016x}", status_word(s, runner, kMotorBits, m.number));
   }
 }
 
@@ -127,9 +134,9 @@ int number_of(std::span<const double> arguments, int addressed, int count) {
   return given >= 0 && given < count ? static_cast<int>(given) : -1;
 }
 
-std::string alias(int number) {
+std::string alias(const Machine::State& s, int number) {
   const bytecode::IVariable alias = bytecode::i_variable(number);
-  return fmt::format("I{}->{}", number, alias.id == bytecode::kNoElement ? "*" : element_text({alias.id, {alias.index, 0, 0}}));
+  return definition_answer(s, fmt::format("I{}", number), alias.id == bytecode::kNoElement ? "*" : element_text({alias.id, {alias.index, 0, 0}}));
 }
 
 }  // namespace
@@ -139,22 +146,38 @@ bool is_report(ControlVerb verb) {
 }
 
 std::string report(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments) {
-  if (verb == ControlVerb::kReportGlobalStatus) return s.answer("$00000000"), "";
+  if (verb == ControlVerb::kReportGlobalStatus) return s.answer(fmt::format("${:08x}", status_word(s, runner, kSystemBits, 0))), "";
   const bool of_variable = verb == ControlVerb::kReportAlias;
   const bool of_coord = verb >= ControlVerb::kReportCoordPosition && verb <= ControlVerb::kReportCoordStatus;
   const int addressed = of_coord ? runner.thread.coord : runner.thread.motor;
   const int count = of_variable ? bytecode::kICount : of_coord ? bytecode::kMaxCoords : bytecode::kMaxMotors;
   const int number = number_of(arguments, addressed, count);
   if (number < 0) return "error #23: OUT OF RANGE NUMBER";
-  if (of_variable) s.answer(alias(number));
+  if (of_variable) s.answer(alias(s, number));
   else if (of_coord) s.answer(coord_answer(s, runner, verb, number));
   else s.answer(motor_answer(s, runner, verb, s.motors[static_cast<std::size_t>(number)]));
   return "";
 }
 
 void answer_value(Machine::State& s, const std::string& name, const std::string& value) {
-  const bool bare = (s.echo & 1) != 0;
-  s.answer(bare ? value : name + "=" + value);
+  s.answer(echoes_without(s, kNoNames) ? value : name + "=" + value);
+}
+
+std::string definition_answer(const Machine::State& s, const std::string& name, const std::string& definition) {
+  return echoes_without(s, kNoDefinitionNames) ? definition : name + "->" + definition;
+}
+
+std::string axis_definition_text(Machine::State& s, const Motor& m) {
+  if (m.coord < 0) return "0";
+  const auto& definitions = s.coord(m.coord).map().definitions();
+  const auto found = std::find_if(definitions.begin(), definitions.end(), [&](const auto& d) { return d.motor == m.number; });
+  return found == definitions.end() ? "0" : definition_text(*found, m.spindle);
+}
+
+std::string pointer_definition_text(const Machine::State& s, int m) {
+  const PointerEntry& pointer = s.pointers.at(m);
+  const bool is_element = pointer.definition.kind == bytecode::PointerKind::kElement;
+  return definition_text(pointer.definition, is_element ? element_text(pointer.element) : std::string());
 }
 
 }  // namespace pmac::runtime

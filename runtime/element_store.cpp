@@ -81,15 +81,16 @@ double ElementStore::sparse_value(ElementId id, std::size_t place) const {
 
 std::vector<std::pair<ElementAddress, double>> ElementStore::saved() const {
   std::vector<std::pair<std::uint64_t, double>> found;
-  const auto note = [&](ElementId id, std::size_t place, double value) {
-    if (element_info(id).access == bytecode::ElementAccess::kSaved && value != default_value(id, place)) found.emplace_back(key(id, place), value);
+  const auto note = [&](ElementId id, std::size_t place, double value, bool assigned) {
+    const bool changed = assigned || value != default_value(id, place);
+    if (changed && element_info(id).access == bytecode::ElementAccess::kSaved) found.emplace_back(key(id, place), value);
   };
   for (std::size_t e = 0; e < rows_.size(); ++e) {
     const auto id = static_cast<ElementId>(e);
     const std::size_t size = rows_[e].dense ? static_cast<std::size_t>(element_info(id).size()) : 0;
-    for (std::size_t place = 0; place < size; ++place) note(id, place, values_[rows_[e].base + place]);
+    for (std::size_t place = 0; place < size; ++place) note(id, place, values_[rows_[e].base + place], assigned_[rows_[e].base + place]);
   }
-  for (const auto& [where, value] : sparse_) note(static_cast<ElementId>(where >> 40), where & 0xff'ffff'ffffu, value);
+  for (const auto& [where, value] : sparse_) note(static_cast<ElementId>(where >> 40), where & 0xff'ffff'ffffu, value, true);
   std::sort(found.begin(), found.end());
   std::vector<std::pair<ElementAddress, double>> result;
   for (const auto& [where, value] : found) result.emplace_back(address_at(static_cast<ElementId>(where >> 40), where & 0xff'ffff'ffffu), value);

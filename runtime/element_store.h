@@ -35,7 +35,7 @@ class ElementStore {
   void assign(const ElementAddress& a, double value);
   bool assigned(bytecode::ElementId id, unsigned i0 = 0, unsigned i1 = 0, unsigned i2 = 0) const;
 
-  /// Saved elements that are not at their default, ascending by element and place.
+  /// Saved elements that were assigned or are not at their default, ascending by element and place.
   std::vector<std::pair<ElementAddress, double>> saved() const;
 
  private:

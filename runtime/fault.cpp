@@ -1,6 +1,12 @@
 #include "runtime/fault.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 namespace pmac::runtime {
+
+std::string number_text(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 
 int error_status(FaultKind kind) {
   switch (kind) {
@@ -28,6 +34,7 @@ int error_status(FaultKind kind) {
     case FaultKind::kRunTime:
     case FaultKind::kBadTarget:
     case FaultKind::kNotReady:
+    case FaultKind::kMotorKilled:
     case FaultKind::kNotSimulated: break;
   }
   return 16;  // run-time error; the controller has no number of its own for these

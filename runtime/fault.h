@@ -21,6 +21,7 @@ enum class FaultKind {
   kNotReady,                // start refused: no motors, not solvable, program missing, ...
   kSoftLimit,
   kUserStatus,              // Coord[].ErrorStatus written by the program
+  kMotorKilled,             // a motor was killed under the program that uses it
   kCcMoveType,              // cutter compensation: a move or command that it does not allow
   kCcLeadOut,               // lead-out that is no line or shorter than the radius
   kCcLeadIn,                // lead-in that is no line or shorter than the radius
@@ -45,6 +46,9 @@ struct [[nodiscard]] Fault {
 };
 
 template <class T> using Result = std::variant<T, Fault>;
+
+/// A number in a message: the shortest digits that give it back; nan has no sign.
+std::string number_text(double value);
 
 /// Value of Coord[].ErrorStatus for a fault.
 int error_status(FaultKind kind);

@@ -9,7 +9,9 @@
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
 #include "compiler/bytecode/operators.h"
+#include "runtime/answer.h"
 #include "runtime/motor_moves.h"
+#include "runtime/set_up_check.h"
 #include "runtime/state.h"
 #include "runtime/value_text.h"
 
@@ -211,7 +213,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kSysServoPeriod:
     case ElementId::kSysRtIntPeriod:
       if (s_.tick > 0 || !(value >= (a.id == ElementId::kSysServoPeriod ? 1e-3 : 0.0)) || value > 1e6)
-        return fault(thread, FaultKind::kRunTime, fmt::format("{} cannot be set to {} now", info.name, value));
+        return fault(thread, FaultKind::kRunTime, fmt::format("{} cannot be set to {} now", info.name, number_text(value)));
       (a.id == ElementId::kSysServoPeriod ? s_.servo_period_ms : rti) = value;
       s_.rti_cycles = static_cast<std::int64_t>(rti) + 1;
       break;
@@ -224,12 +226,12 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kSysDdata: write_user_buffer(s_.io, a, value); return Flow::kContinue;
     case ElementId::kCoordQ: s_.coord(static_cast<int>(a.index[0])).q[a.index[1]] = value; return Flow::kContinue;
     case ElementId::kLdataCoord:
-      if (!(value >= 0 && value < bytecode::kMaxCoords)) return fault(thread, FaultKind::kRunTime, fmt::format("Ldata.Coord = {} is out of range", value));
+      if (!(value >= 0 && value < bytecode::kMaxCoords)) return fault(thread, FaultKind::kRunTime, fmt::format("Ldata.Coord = {} is out of range", number_text(value)));
       thread.coord = static_cast<int>(value);
       if (runner.kind == RunnerKind::kPlc) thread.q = s_.coord(thread.coord).q.data();
       return Flow::kContinue;
     case ElementId::kLdataMotor:
-      if (!(value >= 0 && value < bytecode::kMaxMotors)) return fault(thread, FaultKind::kRunTime, fmt::format("Ldata.Motor = {} is out of range", value));
+      if (!(value >= 0 && value < bytecode::kMaxMotors)) return fault(thread, FaultKind::kRunTime, fmt::format("Ldata.Motor = {} is out of range", number_text(value)));
       thread.motor = static_cast<int>(value);
       return Flow::kContinue;
     case ElementId::kLdataGoBack: thread.go_back = value > 0 && value < 1e9 ? static_cast<int>(value) : 0; return Flow::kContinue;
@@ -256,13 +258,15 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
       if (s_.coord(static_cast<int>(a.index[0])).program_running()) {
         CoordSystem& c = s_.coord(static_cast<int>(a.index[0]));
         if (&c.runner() == &runner)
-          return fault(thread, FaultKind::kUserStatus, fmt::format("the program set Coord[{}].ErrorStatus to {}", a.index[0], value));
-        c.fail(s_.now_ms, {FaultKind::kUserStatus, thread.source(), fmt::format("Coord[{}].ErrorStatus was set to {}", a.index[0], value)});
+          return fault(thread, FaultKind::kUserStatus, fmt::format("the program set Coord[{}].ErrorStatus to {}", a.index[0], number_text(value)));
+        c.fail(s_.now_ms, {FaultKind::kUserStatus, thread.source(), fmt::format("Coord[{}].ErrorStatus was set to {}", a.index[0], number_text(value))});
       }
       return Flow::kContinue;
     default: break;
   }
   s_.elements.assign(a, value);
+  if (!(value > 0))
+    if (const std::string reason = why_nonsense(a, value); !reason.empty()) s_.warn(thread.source(), reason);
   const bool of_trigger = a.id >= ElementId::kSimMotorTriggerPos && a.id <= ElementId::kSimMotorFlagInvert;
   if (of_trigger) trigger_moved(s_, s_.motors[a.index[0]]);
   return Flow::kContinue;
@@ -271,7 +275,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
 /// The motor stands where it stands, and its position from home changes.
 Flow MachineHost::set_home_position(Thread& thread, Motor& m, double value) {
   if (m.moving() || !std::isfinite(value))
-    return fault(thread, FaultKind::kRunTime, fmt::format("Motor[{}].HomePos cannot be set to {} {}", m.number, value, m.moving() ? "while the motor moves" : ""));
+    return fault(thread, FaultKind::kRunTime, fmt::format("Motor[{}].HomePos cannot be set to {} {}", m.number, number_text(value), m.moving() ? "while the motor moves" : ""));
   m.position_mu += m.home_position_mu - value;
   m.home_position_mu = value;
   return Flow::kContinue;
@@ -298,7 +302,7 @@ Flow MachineHost::online(Thread& thread, const bytecode::Module& module, const b
   switch (instruction.op) {
     case Opcode::kAddressCoord:
       if (!(r[instruction.a] >= 0 && r[instruction.a] < bytecode::kMaxCoords)) {
-        s_.refuse("&", fmt::format("error #23: OUT OF RANGE NUMBER: there is no coordinate system {}", r[instruction.a]));
+        s_.refuse("&", fmt::format("error #23: OUT OF RANGE NUMBER: there is no coordinate system {}", number_text(r[instruction.a])));
         return Flow::kStop;
       }
       thread.coord = static_cast<int>(r[instruction.a]);
@@ -306,7 +310,7 @@ Flow MachineHost::online(Thread& thread, const bytecode::Module& module, const b
       return Flow::kContinue;
     case Opcode::kAddressMotor:
       if (!(r[instruction.a] >= 0 && r[instruction.a] < bytecode::kMaxMotors)) {
-        s_.refuse("#", fmt::format("error #23: OUT OF RANGE NUMBER: there is no motor {}", r[instruction.a]));
+        s_.refuse("#", fmt::format("error #23: OUT OF RANGE NUMBER: there is no motor {}", number_text(r[instruction.a])));
         return Flow::kStop;
       }
       thread.motor = static_cast<int>(r[instruction.a]);
@@ -331,7 +335,8 @@ void MachineHost::report_element(const bytecode::ElementRef& ref, double value) 
   ElementAddress address{ref.id, {}};
   for (std::size_t i = 0; i < address.index.size(); ++i) address.index[i] = ref.index[i].value;
   const auto type = ref.address ? bytecode::ElementType::kAddress : element_info(ref.id).type;
-  answer_value(s_, element_text(address) + (ref.address ? ".a" : ""), value_text(type, value));
+  const bool decimal = type == bytecode::ElementType::kMask && echoes_without(s_, kDecimalMasks);
+  answer_value(s_, element_text(address) + (ref.address ? ".a" : ""), decimal ? double_text(value) : value_text(type, value));
 }
 
 void MachineHost::define_axis(Thread& thread, const bytecode::AxisDefinition& definition) {

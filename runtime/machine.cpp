@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::uint64_t kLoadBudget = 1'000'000'000;  // instructions of one load script
 
+constexpr std::size_t kMostWarningsOfALine = 8;
+
 /// The number of "error #20: ILLEGAL CMD"; 20 where the reason has none.
 int error_number(const std::string& reason) {
   const std::size_t at = reason.find("error #");
@@ -61,13 +63,17 @@ void Machine::State::answer(const std::string& text) {
 }
 
 void Machine::State::warn(bytecode::SourceLine source, const std::string& text) {
-  if (options.observers.warning && warned.insert({source.file, source.line}).second) options.observers.warning(source, text);
+  std::set<std::string>& texts = warned[{source.file, source.line}];
+  if (options.observers.warning && texts.size() < kMostWarningsOfALine && texts.insert(text).second) options.observers.warning(source, text);
 }
 
 void Machine::State::refuse(const std::string& text, const std::string& reason) {
   any_refused = true;
   last_error = error_number(reason);
-  if (options.observers.refused) options.observers.refused(text, reason);
+  if (!options.observers.refused) return;
+  if (!executing_queued) return options.observers.refused(text, reason);
+  const std::string sent = fmt::format("{}: cmd \"{}\"", place(executing_queued->source), executing_queued->text);
+  options.observers.refused(text == executing_queued->text ? sent : sent + ": " + text, reason);
 }
 
 void Machine::State::report_fault(const FaultRecord& record) {
@@ -103,6 +109,9 @@ void Machine::State::install(ProgramHandle handle) {
 void Machine::State::run_load_script(ProgramHandle program) {
   Thread& thread = online->thread;
   thread.begin(program);
+  const std::size_t locals = program.program->local_count;
+  online_locals.resize(std::max(online_locals.size(), locals));
+  for (std::size_t i = 0; i < locals; ++i) thread.local(static_cast<int>(i)) = online_locals[i];
   thread.reset_jump_backs();
   RunResult result;
   for (std::uint64_t used = 0; used < kLoadBudget; used += std::max<std::uint64_t>(result.instructions, 1)) {
@@ -113,6 +122,7 @@ void Machine::State::run_load_script(ProgramHandle program) {
   if (result.fault) refuse(place(result.fault->source), result.fault->detail);
   else if (result.stop == RunStop::kBudget) refuse(place(thread.source()), "the command does not come to an end");
   thread.stop();
+  for (std::size_t i = 0; i < locals; ++i) online_locals[i] = thread.local(static_cast<int>(i));
 }
 
 void Machine::State::load(bytecode::Module module) {
@@ -152,7 +162,9 @@ void Machine::State::execute_queued(const QueuedCommand& next) {
   thread.motor = addresses.motor;
   thread.q = coord(thread.coord).q.data();
   last_error = 0;
+  executing_queued = &next;
   command(next.text, "cmd");
+  executing_queued = nullptr;
   addresses = {thread.coord, thread.motor};
   thread.coord = own.coord;
   thread.motor = own.motor;

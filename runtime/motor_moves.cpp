@@ -126,7 +126,7 @@ void note_clip(Motor& m, double clipped_mu, double target_mu) {
 std::string jog_to(Machine::State& s, Motor& m, double target_mu, bytecode::SourceLine source, std::optional<double> trigger_distance_mu) {
   const double distance_mu = trigger_distance_mu.value_or(0);
   if (!std::isfinite(target_mu) || !std::isfinite(distance_mu))
-    return fmt::format("error #21: ILLEGAL PARAMETER: jog target {} of motor {}", std::isfinite(target_mu) ? distance_mu : target_mu, m.number);
+    return fmt::format("error #21: ILLEGAL PARAMETER: jog target {} of motor {}", number_text(std::isfinite(target_mu) ? distance_mu : target_mu), m.number);
   begin_record(s, m, "jog", source);
   const double clipped_mu = clip_target(s, m, target_mu);
   if (clipped_mu != target_mu)
@@ -158,7 +158,7 @@ void jog_stop(Machine::State& s, Motor& m) {
 
 std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source) {
   const double speed_mu_ms = element(s, ElementId::kMotorHomeVel, m);
-  if (speed_mu_ms == 0 || !std::isfinite(speed_mu_ms)) return fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].HomeVel is {}", m.number, speed_mu_ms);
+  if (speed_mu_ms == 0 || !std::isfinite(speed_mu_ms)) return fmt::format("error #21: ILLEGAL PARAMETER: Motor[{}].HomeVel is {}", m.number, number_text(speed_mu_ms));
   if (!trigger_of(s.elements, m.number))
     return fmt::format("error #21: ILLEGAL PARAMETER: motor {} has no trigger and would move for ever; say where it is: Sim.Motor[{}].TriggerPos=... "
                        "or Sim.Motor[{}].FlagPos=...", m.number, m.number, m.number);
@@ -171,6 +171,13 @@ std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source) {
   if (std::isinf(m.trigger_at) && !m.has_plant)
     s.warn(source, fmt::format("motor {} moves away from its trigger (Sim.Motor[{}].TriggerPos or FlagPos) and will not find it", m.number, m.number));
   return {};
+}
+
+Fault killed_under_program(Machine::State& s, const Motor& m) {
+  const CoordSystem& coord = s.coord(m.coord);
+  return {FaultKind::kMotorKilled, coord.executing_source(s.now_ms),
+          fmt::format("the loop of motor {} was opened under program {}, which is aborted; abort a program before a motor of it is killed", m.number,
+                      coord.runner().thread.top_program().program->number)};
 }
 
 void abort_motor(Machine::State& s, Motor& m) {
@@ -220,7 +227,11 @@ void service_motor(Machine::State& s, Motor& m) {
   if (m.seeks_trigger() && m.trigger_ms() <= s.now_ms) pass_trigger(s, m);
   if (m.source == Motor::Source::kProfile && m.profile_end_ms() <= s.now_ms) arrive(m, s.now_ms);
   if (m.kill_at_rest && !m.moving()) delay_kill(s, m, s.now_ms);
-  if (m.kill_ms <= s.now_ms) m.kill(s.now_ms);
+  if (m.kill_ms <= s.now_ms) {
+    const bool in_use = m.has_axis() && s.coord(m.coord).program_running();
+    if (in_use) s.coord(m.coord).fail(s.now_ms, killed_under_program(s, m));
+    m.kill(s.now_ms);
+  }
   if (m.jogging && !m.moving()) report(s, m);
 }
 

@@ -19,6 +19,8 @@ void jog_stop(Machine::State& s, Motor& m);
 /// At HomeVel until the trigger, back to it and on to HomeOffset, which becomes position 0.
 std::string home(Machine::State& s, Motor& m, bytecode::SourceLine source);
 
+/// The fault of a program whose motor is killed. The motor belongs to a coordinate system that executes one.
+Fault killed_under_program(Machine::State& s, const Motor& m);
 /// Where a move to target_mu ends: at a software limit, unless it leads back from beyond it.
 double clip_target(const Machine::State& s, const Motor& m, double target_mu);
 /// The motor follows a profile to clipped_mu instead of target_mu; its status will say so.
@@ -42,7 +44,7 @@ std::vector<motion::GoverningShare> governed_by_itself(const Machine::State& s, 
 
 /// When service_motor() has something to do.
 double next_motor_event_ms(const Motor& m);
-/// A trigger that was passed, a profile that has ended.
+/// A trigger that was passed, a profile that has ended, a delayed kill that is due.
 void service_motor(Machine::State& s, Motor& m);
 
 }  // namespace pmac::runtime

@@ -8,6 +8,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "runtime/answer.h"
 #include "runtime/motor_moves.h"
 #include "runtime/state.h"
 
@@ -33,7 +34,7 @@ int number_or(const Call& call, int addressed, int limit, const char* what) {
   const double given = call.argument(0);
   const double number = std::isnan(given) ? addressed : std::trunc(given);
   if (number >= 0 && number < limit) return static_cast<int>(number);
-  call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no {} {}", what, number);
+  call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no {} {}", what, number_text(number));
   return -1;
 }
 
@@ -62,7 +63,7 @@ Flow abort_coord(const Call& call, CoordSystem& coord, int number) {
 Flow begin_coord(const Call& call, CoordSystem& coord) {
   const double program = call.argument(1);
   if (!(program >= 0 && program < 4294967296.0)) {
-    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: program {}", program);
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: program {}", number_text(program));
     return Flow::kContinue;
   }
   const double label = std::round((program - std::floor(program)) * 1e6);
@@ -185,10 +186,27 @@ bool may_jog(const Call& call, const Motor& m) {
   return call.refusal.empty();
 }
 
-/// A program that moves the motor is aborted. dkill: the brake engages first.
+/// The loop of a motor opens. A program that is using the motor ends with a fault; one that opens the loop itself while the motor rests
+/// goes on, and its next move is the fault.
+Flow leave_closed_loop(const Call& call, const Motor& m) {
+  Runner& r = call.runner;
+  if (!m.has_axis() || !call.s.coord(m.coord).program_running()) return Flow::kContinue;
+  CoordSystem& coord = call.s.coord(m.coord);
+  if (r.kind == RunnerKind::kKinematics && r.number == m.coord) return abort_coord(call, coord, m.coord);
+  const bool inside = r.kind == RunnerKind::kMotionProgram && r.number == m.coord;
+  if (inside && !coord.on_path() && !m.moving()) return Flow::kContinue;
+  Fault fault = killed_under_program(call.s, m);
+  if (!inside) {
+    coord.fail(call.s.now_ms, std::move(fault));
+    return Flow::kContinue;
+  }
+  r.thread.set_host_fault(std::move(fault));
+  return Flow::kFault;
+}
+
+/// dkill: the brake engages first.
 Flow kill(const Call& call, Motor& m) {
-  const bool in_program = m.has_axis() && call.s.coord(m.coord).program_running();
-  const Flow flow = in_program ? abort_coord(call, call.s.coord(m.coord), m.coord) : Flow::kContinue;
+  const Flow flow = leave_closed_loop(call, m);
   if (call.verb == ControlVerb::kKill) m.kill(call.s.now_ms);
   else delay_kill(call.s, m, call.s.now_ms);
   return flow;
@@ -200,20 +218,21 @@ void phase(const Call& call, Motor& m) {
   m.enable();
 }
 
-/// Open loop with an output in % of MaxDac, which needs a mass to drive. With none a motor stays where it is.
+/// out{percent of Motor[].MaxDac}: it drives the mass of a plant; a motor without one stands.
 Flow open_loop(const Call& call, Motor& m) {
   const double percent = call.argument(1);
-  const bool plant = call.s.elements.get(ElementId::kSimMotorPlant, static_cast<unsigned>(m.number)) != 0;
-  if (!(percent >= -100 && percent <= 100)) call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: an output of {} %", percent);
-  else if (percent != 0 && !plant)
-    call.refusal = fmt::format("error #20: ILLEGAL CMD: an open-loop output of {} % needs a motor that can move; give it a plant: Sim.Motor[{}].Plant=1", percent, m.number);
-  if (!call.refusal.empty()) return Flow::kContinue;
-  const bool in_program = m.has_axis() && call.s.coord(m.coord).program_running();
-  const Flow flow = in_program ? abort_coord(call, call.s.coord(m.coord), m.coord) : Flow::kContinue;
+  if (!(std::abs(percent) <= 100)) {
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: an open-loop output of {} %; it is -100 to 100 % of Motor[{}].MaxDac", number_text(percent), m.number);
+    return Flow::kContinue;
+  }
+  const Flow flow = leave_closed_loop(call, m);
   m.kill(call.s.now_ms);
   m.amplifier_enabled = true;
   m.open_loop_share = percent / 100;
   m.in_use = m.in_use || percent != 0;
+  const bool plant = call.s.elements.get(ElementId::kSimMotorPlant, static_cast<unsigned>(m.number)) != 0;
+  if (percent != 0 && !plant)
+    call.s.warn(call.runner.thread.source(), fmt::format("motor {} stands under its open-loop output of {} %: it has no mechanics; give it a plant: Sim.Motor[{}].Plant=1", m.number, percent, m.number));
   return flow;
 }
 
@@ -277,7 +296,7 @@ void begin_plc(const Call& call, Plc& plc, int number, const ProgramHandle& prog
 Flow plc_verb(const Call& call) {
   const double given = call.argument(0);
   if (!(given >= 0 && given < bytecode::kMaxPlcs)) {
-    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no PLC {}", given);
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no PLC {}", number_text(given));
     return Flow::kContinue;
   }
   const int number = static_cast<int>(given);
@@ -325,14 +344,11 @@ Flow send_all_commands(const Call& call) {
 Flow report_pointer(const Call& call) {
   const double number = call.argument(0);
   if (!(number >= 0 && number < bytecode::kMCount)) {
-    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: M{}", number);
+    call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: M{}", number_text(number));
     return Flow::kContinue;
   }
   const int m = static_cast<int>(number);
-  const PointerEntry& pointer = call.s.pointers.at(m);
-  const bool is_element = pointer.definition.kind == bytecode::PointerKind::kElement;
-  const std::string element = is_element ? element_text(pointer.element) : std::string();
-  call.s.answer(fmt::format("M{}->{}", m, definition_text(pointer.definition, element)));
+  call.s.answer(definition_answer(call.s, fmt::format("M{}", m), pointer_definition_text(call.s, m)));
   return Flow::kContinue;
 }
 

@@ -46,8 +46,7 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   };
   o.refused = [&report, &console](const std::string& text, const std::string& reason) {
     if (console.executing()) return console.refuse(reason);
-    report.add_refusal(text, reason);
-    std::fprintf(stderr, "refused: %s: %s\n", text.c_str(), reason.c_str());
+    if (report.add_refusal(text, reason)) std::fprintf(stderr, "refused: %s: %s\n", text.c_str(), reason.c_str());
   };
   o.warning = [&machine](bytecode::SourceLine source, const std::string& text) {
     std::fprintf(stderr, "%s: warning: %s\n", machine->place(source).c_str(), text.c_str());
@@ -166,6 +165,7 @@ int run(const RunOptions& options) {
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   if (shows_progress(options)) std::fprintf(stderr, "\r                              \r");
   recorder.finish();
+  std::fputs(report.repeated_refusals().c_str(), stderr);
   explain_end(options, outcome);
   const bool idle_from_start = outcome.end == runtime::RunEnd::kIdle && report.move_count() == 0 && outcome.time_ms < 11;
   if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.console && !options.quiet && exit_code(machine, report, outcome) == kExitOk)

@@ -98,6 +98,7 @@ void Machine::State::reset_now() {
   elements = ElementStore();
   clear(*this);
   if (!factory && saved) restore(*this, *saved);
+  if (factory) elements.set(ElementId::kSysDefault, 1);
   if (tick > 0) {  // the clocks are fixed from the first servo interrupt on
     elements.set(ElementId::kSysServoPeriod, period_ms);
     elements.set(ElementId::kSysRtIntPeriod, static_cast<double>(rti_cycles - 1));

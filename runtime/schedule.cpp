@@ -221,10 +221,9 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
   }
   outcome.time_ms = now_ms;
   if (limits.more_follows) return outcome;
-  for (const auto& c : coords) c->report_unfinished(now_ms, true);
   for (const auto& c : coords)
-    if (c->program_active())
-      outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->runner().thread.source())));
+    if (c->program_active()) outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->line_at(now_ms))));
+  for (const auto& c : coords) c->report_unfinished(now_ms, true);
   sample_to(tick_ms(tick) >= now_ms ? now_ms : tick_ms(tick + 1));
   outcome.ticks = tick;
   outcome.instructions = instructions;

@@ -101,9 +101,11 @@ struct Machine::State {
   std::uint64_t instructions = 0;
   std::uint64_t random_state = 0x9e3779b97f4a7c15ull;
   bool any_fault = false, any_refused = false;
+  const QueuedCommand* executing_queued = nullptr;   // the cmd "..." that is being executed
   int last_error = 0;                                // number of the last refusal, as in error #20; 0: none
   std::optional<bytecode::SourceLine> assignment_source;  // of the synchronous assignment that is being performed
-  std::set<std::pair<std::int32_t, std::int32_t>> warned;   // file and line
+  std::map<std::pair<std::int32_t, std::int32_t>, std::set<std::string>> warned;   // texts by file and line
+  std::vector<double> online_locals;                 // L variables of the command lines
   double idle_since_ms = 0;
   bool is_idle = true;
 

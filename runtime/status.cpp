@@ -20,6 +20,12 @@ bool motor_in_position(const Machine::State& s, const Motor& m) {
   return band_mu >= 0 && m.checks_at_rest(s.now_ms, s.period_ms()) >= checks;
 }
 
+/// Of the last servo interrupt; a motor without a plant has one in open loop only.
+double servo_output(const Machine::State& s, const Motor& m) {
+  if (m.has_plant) return m.loop.output();
+  return m.closed_loop ? 0 : m.open_loop_share * s.elements.get(ElementId::kMotorMaxDac, static_cast<unsigned>(m.number));
+}
+
 double motor_value(Machine::State& s, ElementId id, const Motor& m) {
   const double raw_mu = m.home_position_mu + m.position_at(s.now_ms);
   switch (id) {
@@ -46,6 +52,8 @@ double motor_value(Machine::State& s, ElementId id, const Motor& m) {
     case ElementId::kMotorHomeInProgress: return m.homing();
     case ElementId::kMotorTriggerMove: return m.seeks_trigger();
     case ElementId::kMotorTriggerNotFound: return m.trigger_not_found;
+    case ElementId::kMotorServoOut: return servo_output(s, m);
+    case ElementId::kMotorCsolve: return m.coord >= 0 && s.coord(m.coord).map().solvable();
     case ElementId::kMotorCoord: return std::max(m.coord, 0);
     default: return s.elements.get(id, static_cast<unsigned>(m.number));
   }
@@ -106,14 +114,14 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
 
 bool belongs_to(ElementId id, ElementId first, ElementId last) { return id >= first && id <= last; }
 
-/// Triggers, limits and faults of a coordinate system: those of any of its motors. The rows of the status words above bit 16.
-struct AnyMotorRow { int bit; ElementId coord, motor; };
+/// Triggers, limits and faults of a coordinate system: those of any of its motors.
+struct AnyMotorRow { ElementId coord, motor; };
 constexpr AnyMotorRow kAnyMotor[] = {
-#define MOTOR_STATUS_BIT(bit, name)
-#define COORD_STATUS_BIT(bit, name) {bit, ElementId::kCoord##name, ElementId::kMotor##name},
+#define MOTOR_STATUS(bit, width, name)
+#define COORD_STATUS(bit, width, name)
+#define ANY_MOTOR_STATUS(bit, name) {ElementId::kCoord##name, ElementId::kMotor##name},
+#define SYS_STATUS(bit, width, name)
 #include "runtime/status_bit.def"
-#undef MOTOR_STATUS_BIT
-#undef COORD_STATUS_BIT
 };
 
 }  // namespace
@@ -146,7 +154,7 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
   if (belongs_to(a.id, ElementId::kMotorServoCtrl, ElementId::kMotorCoord)) return motor_value(s, a.id, s.motors[a.index[0]]);
   if (belongs_to(a.id, ElementId::kCoordTa, ElementId::kCoordCdPos)) return coord_value(s, a);
   for (const AnyMotorRow& row : kAnyMotor)
-    if (row.coord == a.id && row.bit > 16) return any_motor(s, s.coord(static_cast<int>(a.index[0])), row.motor);
+    if (row.coord == a.id) return any_motor(s, s.coord(static_cast<int>(a.index[0])), row.motor);
   return s.elements.get(a);
 }
 

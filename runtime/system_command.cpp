@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
-#include "runtime/state.h"
+#include "runtime/answer.h"
+#include "runtime/backup.h"
+#include "runtime/listing.h"
 
 namespace pmac::runtime {
 namespace {
@@ -45,63 +47,12 @@ std::string echo(const SystemCall& call) {
 
 // --- buffers ------------------------------------------------------------------------------------------------------------------
 
-ProgramHandle in_table(const std::map<std::uint32_t, ProgramHandle>& table, std::uint32_t number) {
-  const auto found = table.find(number);
-  return found == table.end() ? ProgramHandle{} : found->second;
-}
+std::string list_buffer(const SystemCall& call) { return list(call.s, call.thread.coord, call.words); }
 
-ProgramHandle buffer(const SystemCall& call) {
-  const std::string kind = call.word(1);
-  const auto number = call.words.size() > 2 ? number_in(call.word(2)) : std::optional<std::uint32_t>(static_cast<std::uint32_t>(call.thread.coord));
-  if (!number) return {};
-  if (kind == "prog") return in_table(call.s.progs, *number);
-  if (kind == "subprog") return in_table(call.s.subprogs, *number);
-  if (kind == "plc") return in_table(call.s.plc_programs, *number);
-  const bool kinematic = (kind == "forward" || kind == "inverse") && *number < call.s.coords.size();
-  if (!kinematic) return {};
-  const CoordSystem& coord = call.s.coord(static_cast<int>(*number));
-  return kind == "forward" ? coord.forward : coord.inverse;
-}
-
-std::optional<std::string> source_line(const SystemCall& call, bytecode::SourceLine source) {
-  if (!call.s.options.source_text || source.file < 0) return std::nullopt;
-  return call.s.options.source_text(call.s.files[static_cast<std::size_t>(source.file)], source.line);
-}
-
-/// The lines between open and close, as far as they hold statements; without the source, its instructions.
-std::string list_program(const SystemCall& call, const ProgramHandle& handle) {
-  const bytecode::Program& program = *handle.program;
-  int last = program.source.line;
-  for (const bytecode::LineEntry& line : program.lines)
-    if (line.source.file == program.source.file) last = std::max(last, line.source.line);
-  bool any = false;
-  for (int line = program.source.line + 1; line <= last; ++line) {
-    const auto text = source_line(call, {program.source.file, line, 1});
-    if (!text || *text == "close") continue;
-    call.s.answer(*text);
-    any = true;
-  }
-  if (any || program.lines.empty()) return {};
-  bytecode::Module alone = *handle.module;
-  alone.programs = {program};
-  alone.load_order.clear();
-  return answer(call, disassemble(alone));
-}
-
-/// list pc: where the program of the addressed coordinate system calculates.
-std::string list_counter(const SystemCall& call) {
-  const CoordSystem& coord = call.s.coord(call.thread.coord);
-  if (!coord.program_active()) return "error #22: PROGRAM NOT IN BUFFER: no program is active in the addressed coordinate system";
-  const bytecode::SourceLine at = coord.runner().thread.source();
-  return answer(call, source_line(call, at).value_or(call.s.place(at)));
-}
-
-std::string list(const SystemCall& call) {
-  if (call.word(1) == "pc") return list_counter(call);
-  if (call.word(1) == "apc") return "error #20: ILLEGAL CMD: list apc is not simulated; list pc tells where the program calculates";
-  const ProgramHandle handle = buffer(call);
-  if (!handle) return "error #22: PROGRAM NOT IN BUFFER";
-  return list_program(call, handle);
+std::string back_up(const SystemCall& call) {
+  std::string what;
+  for (std::size_t i = 1; i < call.words.size(); ++i) what += call.words[i];
+  return backup(call.s, call.thread, what);
 }
 
 /// One line a buffer: kind, number, instructions.
@@ -148,6 +99,20 @@ std::string undefine(const SystemCall& call) {
   return {};
 }
 
+// --- what it is, and what is addressed -------------------------------------------------------------------------------------------
+
+constexpr const char* kReleaseDate = "11/22/2026";  // of the version that vers answers
+
+/// Simulated time since the start: hours, minutes, seconds.
+std::string clock_text(double time_ms) {
+  const auto seconds = static_cast<std::int64_t>(time_ms / 1000);
+  return fmt::format("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
+}
+
+std::string addressed(const SystemCall& call, char sign, int number) {
+  return echoes_without(call.s, kNoAddressSigns) ? fmt::format("{}", number) : fmt::format("{}{}", sign, number);
+}
+
 // --- saving and resetting -----------------------------------------------------------------------------------------------------------
 
 std::string save(const SystemCall& call) {
@@ -162,15 +127,17 @@ std::string reset(const SystemCall& call) {
 
 struct Row { std::string_view word; std::string (*handler)(const SystemCall&); };
 constexpr Row kRows[] = {
-    {"echo", echo}, {"list", list}, {"buffer", list_buffers}, {"size", size_of_buffers}, {"undefine", undefine},
+    {"echo", echo}, {"list", list_buffer}, {"backup", back_up}, {"buffer", list_buffers}, {"size", size_of_buffers}, {"undefine", undefine},
     {"define", rotary}, {"delete", rotary},
     {"save", save}, {"fsave", save}, {"$$$", reset}, {"$$$***", reset}, {"reboot", reset},
     {"vers", [](const SystemCall& call) { return answer(call, "0.1.0"); }},
     {"type", [](const SystemCall& call) { return answer(call, "pmac-run"); }},
     {"cpu", [](const SystemCall& call) { return answer(call, "simulated"); }},
     {"cid", [](const SystemCall& call) { return answer(call, "0"); }},
-    {"#", [](const SystemCall& call) { return answer(call, fmt::format("#{}", call.thread.motor)); }},
-    {"&", [](const SystemCall& call) { return answer(call, fmt::format("&{}", call.thread.coord)); }},
+    {"date", [](const SystemCall& call) { return answer(call, kReleaseDate); }},
+    {"time", [](const SystemCall& call) { return answer(call, clock_text(call.s.now_ms)); }},
+    {"#", [](const SystemCall& call) { return answer(call, addressed(call, '#', call.thread.motor)); }},
+    {"&", [](const SystemCall& call) { return answer(call, addressed(call, '&', call.thread.coord)); }},
 };
 
 }  // namespace

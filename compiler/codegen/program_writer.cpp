@@ -118,7 +118,7 @@ bytecode::Program ProgramWriter::write_load(const ir::Unit& unit, std::size_t fi
   program.kind = bytecode::ProgramKind::kOnline;
   first_program_ = first_program;
   if (!unit.load.empty()) program.source = tables_.line(unit.load.front()->span);
-  begin(0);
+  begin(unit.local_count);
   body(unit.load);
   finish(program);
   return program;

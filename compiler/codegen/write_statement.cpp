@@ -77,14 +77,22 @@ void ProgramWriter::assign_synchronously(const ir::Assign& node) {
   emit_imm(Opcode::kSyncStore, right, tables_.sync_target(target));
 }
 
-/// Sys.CdTimer[3]=1,2,3: consecutive elements.
+/// Sys.CdTimer[3]=1,2,3: consecutive elements. Where the index is a local (Table[L0]=1,2), a copy of it counts.
 void ProgramWriter::assign_elements(const ir::Assign& node) {
   const auto& first = std::get<ir::Element>(node.target->node);
   bytecode::ElementRef ref = make_element_ref(first);
-  const std::size_t last = first.indices.size() - 1;
+  bytecode::ElementRef::Index& index = ref.index[first.indices.size() - 1];
+  const Register one = index.is_register ? take() : Register{};
+  if (index.is_register) {
+    const Register number = take();
+    emit_abc(Opcode::kMove, number, static_cast<Register>(index.value));
+    load_number(1, one);
+    index.value = number;
+  }
   for (const ir::ExprPtr& expr : node.values) {
     emit_imm(Opcode::kStoreElement, value(*expr), tables_.element(ref));
-    ++ref.index[last].value;
+    if (index.is_register) emit_abc(Opcode::kAdd, static_cast<Register>(index.value), static_cast<Register>(index.value), one);
+    else ++index.value;
   }
 }
 

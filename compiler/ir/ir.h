@@ -188,6 +188,7 @@ struct Buffer {
 struct Unit {
   std::vector<Buffer> buffers;
   Body load;                       // statements of the load stream, in order
+  std::int64_t local_count = 0;    // L variables that they use; filled by sema
   Span clear_all;                  // a clear all buffers in it, or no place
 };
 

@@ -18,6 +18,9 @@ class Binder {
   void bind_buffer(ir::Buffer& buffer);
   void bind_statement(ir::Stmt& statement);
 
+  /// How many L variables the load stream has used since its last buffer.
+  std::int64_t local_count() const { return highest_local_ + 1; }
+
  private:
   struct Local { std::int64_t number; std::int64_t size; source::Span span; };
 

@@ -64,11 +64,12 @@ void Binder::bind(ir::Assign& node, const source::Span& span) {
   bind_target(*node.target);
   const auto* variable = std::get_if<ir::Variable>(&node.target->node);
   const auto* element = std::get_if<ir::Element>(&node.target->node);
-  const bool indexed_element = element && !element->indices.empty() && ir::constant_value(*element->indices.back());
+  const bool indexed_element = element && !element->indices.empty();
   const bool listable = (variable || indexed_element) && node.op == bytecode::AssignOp::kSet && !node.synchronous;
-  if (node.values.size() > 1 && !listable) diagnostics_.error("PM3023", span, "a list of values is assigned with = to variables, or to elements from a constant index on");
-  if (node.values.size() > 1 && indexed_element && element->element != bytecode::kNoElement) {
-    const double last = *ir::constant_value(*element->indices.back()) + static_cast<double>(node.values.size()) - 1;
+  if (node.values.size() > 1 && !listable) diagnostics_.error("PM3023", span, "a list of values is assigned with = to variables, or to elements with an index");
+  const auto first_index = indexed_element ? ir::constant_value(*element->indices.back()) : std::nullopt;
+  if (node.values.size() > 1 && first_index && element->element != bytecode::kNoElement) {
+    const double last = *first_index + static_cast<double>(node.values.size()) - 1;
     const int count = bytecode::element_info(element->element).index_counts[element->indices.size() - 1];
     if (last >= count) diagnostics_.error("PM3050", span, fmt::format("the list goes on to index {}; the last one of {} is {}", last, bytecode::element_info(element->element).name, count - 1));
   }
@@ -414,6 +415,7 @@ void Binder::bind_buffer(ir::Buffer& buffer) {
   check_labels(buffer, labels_, jumps_, diagnostics_);
   check_motion(buffer.body, diagnostics_);
   buffer.local_count = highest_local_ + 1;
+  highest_local_ = -1;
   buffer_ = nullptr;
   locals_.clear();
 }
@@ -436,6 +438,7 @@ void check(ir::Unit& unit, Project& project, const Settings& settings, source::D
       continue;
     }
     binder.bind_statement(*unit.load[i]);
+    unit.local_count = std::max(unit.local_count, binder.local_count());
     const bool needs_coord = project.addressed_coord < 0 && !settings.online && uses_q_of_addressed_coord(*unit.load[i]);
     if (!needs_coord) continue;
     const source::Span span = unit.load[i]->span;

@@ -70,6 +70,7 @@ std::string CoordSystem::start_at(const ProgramHandle& program, std::int64_t lab
     return fmt::format("error #35: INVALID LABEL: program {} has no label N{}", program.program->number, label);
   runner_.thread.coord = number_;
   runner_.thread.q = q.data();
+  aborted_ = {};
   machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
   block_ = {};
   stop_requested_ = pause_requested_ = pause_at_rest_ = stepping_ = step_block_ = false;
@@ -183,7 +184,7 @@ std::string CoordSystem::slope_of(ElementId slew, double& slope_per_ms) const {
 
 std::string CoordSystem::set_time_base(double time_ms, double rate) {
   if (!(rate >= 0 && rate <= kMostRate))
-    return fmt::format("error #23: OUT OF RANGE NUMBER: a time base of {} %; it is 0 to {} %", 100 * rate, 100 * kMostRate);
+    return fmt::format("error #23: OUT OF RANGE NUMBER: a time base of {} %; it is 0 to {} %", number_text(100 * rate), 100 * kMostRate);
   if (rate == time_base_.override_rate()) return {};
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordTimeBaseSlew, slope_per_ms); !refusal.empty()) return refusal;
@@ -229,6 +230,7 @@ const TimeBase* CoordSystem::clock_for_motion(double time_ms) {
 // --- stopping -------------------------------------------------------------------------------------------------------------
 
 void CoordSystem::abort(double time_ms) {
+  if (program_active()) aborted_ = {runner_.thread.top_program(), executing_source(time_ms)};
   std::vector<double> position(path_map_.motors.size()), velocity(path_map_.motors.size());
   if (on_path_) {
     pipeline_.sample(path_position(time_ms), 1.0, 1, position, velocity);

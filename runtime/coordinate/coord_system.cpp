@@ -83,6 +83,8 @@ void CoordSystem::fail_at_once(double time_ms, Fault fault) {
   machine_.report_fault({time_ms, number_, -1, std::move(fault)});
 }
 
+bytecode::SourceLine CoordSystem::line_at(double time_ms) const { return runner_.thread.active() ? runner_.thread.source() : executing_source(time_ms); }
+
 bool CoordSystem::executes(const bytecode::Program* program) const {
   return program_active() && (runner_.thread.program().program == program || runner_.thread.top_program().program == program);
 }

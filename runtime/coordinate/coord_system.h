@@ -119,6 +119,11 @@ class CoordSystem {
   const Runner& runner() const { return runner_; }
   Runner& runner() { return runner_; }
   bool dwelling() const { return phase_ == Phase::kDwelling; }
+  /// Where the program stands, for a message: at its calculation, or once that has ended, in motion.
+  bytecode::SourceLine line_at(double time_ms) const;
+  /// Where the program stood when it was aborted last; no program where it has run on since.
+  struct Stand { ProgramHandle program; bytecode::SourceLine source; };
+  const Stand& aborted() const { return aborted_; }
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
@@ -305,6 +310,7 @@ class CoordSystem {
   std::vector<double> near_joint_;        // of robot: the last ones on the path, which say its branch
   Runner runner_, kinematics_;
   ProgramHandle pointed_;
+  Stand aborted_;
   std::int64_t pointed_label_ = -1;
   enum class RotaryState { kNone, kExecutes, kWaits };  // kWaits: all lines are done, the next ones start at once
   std::deque<ProgramHandle> rotary_;                    // lines as they were appended; the first ones execute

@@ -157,7 +157,7 @@ motion::MotionCommand block_command(const ModalState& modal, const OpenBlock& bl
 
 std::optional<Fault> set_segment_time(MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source) {
   if (!std::isfinite(value) || value <= 0)
-    return Fault{FaultKind::kBadTarget, source, fmt::format("the time of a {} move is {} ms; it must be above 0", parameter == MotionParameter::kPvtTime ? "pvt" : "spline", value)};
+    return Fault{FaultKind::kBadTarget, source, fmt::format("the time of a {} move is {} ms; it must be above 0", parameter == MotionParameter::kPvtTime ? "pvt" : "spline", number_text(value))};
   if (parameter == MotionParameter::kPvtTime) modal.pvt_time_ms = value;
   else modal.spline_time_ms[static_cast<std::size_t>(parameter) - static_cast<std::size_t>(MotionParameter::kSplineTime0)] = value;
   return std::nullopt;
@@ -166,13 +166,13 @@ std::optional<Fault> set_segment_time(MotionParameter parameter, double value, M
 std::optional<Fault> set_compensation(MotionParameter parameter, double value, ModalState& modal, bytecode::SourceLine source) {
   if (parameter == MotionParameter::kCcRadius) {
     if (!std::isfinite(value) || value < 0)
-      return Fault{FaultKind::kBadTarget, source, fmt::format("ccr is {}; the radius of cutter compensation is a finite number, 0 or more", value)};
+      return Fault{FaultKind::kBadTarget, source, fmt::format("ccr is {}; the radius of cutter compensation is a finite number, 0 or more", number_text(value))};
     modal.compensation_radius_uu = value;
     return std::nullopt;
   }
   if (value == 3) return Fault{FaultKind::kNotSimulated, source, "ccmode3, compensation in three dimensions, is not simulated"};
   if (value != 0 && value != 1 && value != 2)
-    return Fault{FaultKind::kBadTarget, source, fmt::format("there is no ccmode{}; 0 is off, 1 left, 2 right", value)};
+    return Fault{FaultKind::kBadTarget, source, fmt::format("there is no ccmode{}; 0 is off, 1 left, 2 right", number_text(value))};
   modal.compensation_side = static_cast<int>(value);
   return std::nullopt;
 }
@@ -184,7 +184,7 @@ std::optional<Fault> set_motion_parameter(MotionParameter parameter, double valu
   if (id == ElementId::kCount)
     return Fault{FaultKind::kNotSimulated, source, fmt::format("{} is not simulated", motion_parameter_name(parameter))};
   if (!std::isfinite(value))
-    return Fault{FaultKind::kBadTarget, source, fmt::format("{} is {}, not a finite number", motion_parameter_name(parameter), value)};
+    return Fault{FaultKind::kBadTarget, source, fmt::format("{} is {}, not a finite number", motion_parameter_name(parameter), number_text(value))};
   if (parameter == MotionParameter::kFeed && value <= 0)
     return Fault{FaultKind::kBadTarget, source, fmt::format("the feed rate F is {}; it must be positive", value)};
   if (parameter == MotionParameter::kTm && value < 0)

@@ -20,7 +20,7 @@ std::string CoordSystem::rename_position() {
 
 std::optional<Fault> CoordSystem::select_transform(double number, bytecode::SourceLine source) {
   if (!(number >= -1 && number < kTransformCount) || number != std::floor(number))
-    return Fault{FaultKind::kBadTarget, source, fmt::format("tsel {} selects no matrix; they are 0 to {}, and -1 for none", number, kTransformCount - 1)};
+    return Fault{FaultKind::kBadTarget, source, fmt::format("tsel {} selects no matrix; they are 0 to {}, and -1 for none", number_text(number), kTransformCount - 1)};
   if (auto fault = refuse_while_compensating("tsel", source)) return fault;
   frame_.transform = static_cast<int>(number);
   if (const std::string refusal = rename_position(); !refusal.empty())
@@ -38,7 +38,7 @@ std::string CoordSystem::change_positions(double time_ms, const PositionChange& 
   if (change.verb == ControlVerb::kPclr) frame_.position_bias_uu.fill(0);
   if (change.verb == ControlVerb::kPload) frame_.position_bias_uu = frame_.stored_bias_uu;
   if (change.verb == ControlVerb::kPset) {
-    if (!std::isfinite(change.value)) return fmt::format("error #21: ILLEGAL PARAMETER: pset {}{}", bytecode::axis_name(change.axis), change.value);
+    if (!std::isfinite(change.value)) return fmt::format("error #21: ILLEGAL PARAMETER: pset {}{}", bytecode::axis_name(change.axis), number_text(change.value));
     AxisVector values{};
     values[static_cast<std::size_t>(change.axis)] = change.value;
     frame_.rename(machine_.elements, program_uu_, 1u << change.axis, values);

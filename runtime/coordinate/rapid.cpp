@@ -64,6 +64,7 @@ std::optional<Fault> CoordSystem::rapid_parameters(double time_ms, const RapidMo
 
 std::optional<Fault> CoordSystem::move_rapid(double time_ms, const RapidMove& move) {
   const motion::MotorMap map = motor_map();
+  if (const std::string refusal = why_not_ready(false); !refusal.empty()) return Fault{FaultKind::kNotReady, move.source, refusal};
   if (move.trigger_axes != 0 && map.inverse)
     return Fault{FaultKind::kMoveType, move.source, "a move until a trigger (^) cannot go through kinematics"};
   std::vector<double> target(map.motors.size());

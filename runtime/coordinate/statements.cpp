@@ -62,7 +62,7 @@ Flow CoordSystem::motion(Thread& thread, const bytecode::Instruction& instructio
     case Opcode::kDelay: {
       const double ms = r[instruction.a];
       if (!std::isfinite(ms) || ms < 0)
-        return give_up(thread, {FaultKind::kBadTarget, thread.source(), fmt::format("a wait of {} ms is not possible", ms)});
+        return give_up(thread, {FaultKind::kBadTarget, thread.source(), fmt::format("a wait of {} ms is not possible", number_text(ms))});
       thread.reset_jump_backs();
       if (instruction.op == Opcode::kDwell) {
         dwell_ms_ = ms;
@@ -145,6 +145,8 @@ std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
 
 Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command) {
   const auto cs = static_cast<unsigned>(number_);
+  if (const std::string refusal = on_path_ ? std::string() : why_not_ready(false); !refusal.empty())
+    return give_up(thread, {FaultKind::kNotReady, thread.source(), refusal});
   ensure_sequence(machine_.now_ms);
   command.id = next_id_;
   command.no_blend = machine_.elements.get(ElementId::kCoordNoBlend, cs) != 0 || machine_.elements.get(ElementId::kCoordOnceNoBlend, cs) != 0;

@@ -48,7 +48,7 @@ bool InterpreterCore::write_text(double address, const std::string& text, double
 }
 
 bool InterpreterCore::byte_count_argument(double value, std::size_t& count) {
-  if (!(value > -1.0 && value <= kMostBytes)) return refuse_memory(fmt::format("{} is no number of bytes", value));
+  if (!(value > -1.0 && value <= kMostBytes)) return refuse_memory(fmt::format("{} is no number of bytes", number_text(value)));
   count = static_cast<std::size_t>(value);
   return true;
 }

@@ -19,13 +19,13 @@ constexpr double kMostElements = 65536;   // of one vector or matrix
 
 /// A whole number of elements, rows or columns.
 bool InterpreterCore::count_argument(double value, std::int64_t& count) {
-  if (!(value > -1.0 && value <= kMostElements)) return refuse_memory(fmt::format("{} is no number of elements, rows or columns", value));
+  if (!(value > -1.0 && value <= kMostElements)) return refuse_memory(fmt::format("{} is no number of elements, rows or columns", number_text(value)));
   count = static_cast<std::int64_t>(value);
   return true;
 }
 
 bool InterpreterCore::step_argument(double value, std::int64_t& step) {
-  if (!(std::abs(value) <= kMostElements)) return refuse_memory(fmt::format("{} is no step from element to element", value));
+  if (!(std::abs(value) <= kMostElements)) return refuse_memory(fmt::format("{} is no step from element to element", number_text(value)));
   step = static_cast<std::int64_t>(value);
   return true;
 }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr char kAck = 0x06, kEndOfInput = 0x04;
 constexpr std::size_t kLongestLine = 1 << 20;
+constexpr std::size_t kLongestOwnLine = 200;  // of wait and its kind
 constexpr int kPaceMs = 10;
 
 double wall_ms() {
@@ -96,28 +97,47 @@ std::optional<std::string> Console::typed_line(int line) const {
   return found == typed_.end() ? std::nullopt : std::optional<std::string>(found->second);
 }
 
-/// first_line: of the text; a text of several lines keeps its numbers by empty lines before it.
+/// first_line: of the text.
 void Console::execute(runtime::Machine& machine, const std::string& text, int first_line) {
   error_place_ = {};
-  error_place_.before = text.find('\n') == std::string::npos ? first_line - 1 : 0;
-  const std::string lines = error_place_.before > 0 ? text : std::string(static_cast<std::size_t>(first_line - 1), '\n') + text;
+  error_place_.before = first_line - 1;
   executing_ = true;
-  machine.command(lines, kName);
+  machine.command(text, kName);
   executing_ = false;
+  error_place_ = {};
 }
 
-/// wait 500 and wait idle are the console's own: simulated milliseconds, or until nothing moves.
+/// wait 500 and wait idle are the console's own: simulated milliseconds, or until nothing moves. True: the line was one for the console.
 bool Console::wait(const std::string& line) {
-  static const std::regex kWait(R"(\s*wait\s+(idle|[0-9]*\.?[0-9]+)\s*;?\s*)", std::regex::icase);
+  static const std::regex kWait(R"(\s*wait\s+(idle|[0-9]+\.?[0-9]*|\.[0-9]+)(\s*ms)?\s*;?\s*)", std::regex::icase);
+  static const std::regex kOwnWord(R"(\s*(wait|quit|exit|bye|help)\b(?!\s*[=(]).*)", std::regex::icase);
   std::smatch match;
-  if (!std::regex_match(line, match, kWait)) return false;
-  wait_idle_ = std::isalpha(static_cast<unsigned char>(match[1].str()[0])) != 0;
-  wait_ms_ = wait_idle_ ? 0 : std::atof(match[1].str().c_str());
+  if (line.size() > kLongestOwnLine) return false;
+  waits_ = std::regex_match(line, match, kWait);
+  if (waits_) {
+    wait_idle_ = std::isalpha(static_cast<unsigned char>(match[1].str()[0])) != 0;
+    wait_ms_ = wait_idle_ ? 0 : std::atof(match[1].str().c_str());
+    return true;
+  }
+  if (!std::regex_match(line, match, kOwnWord)) return false;
+  const bool is_wait = std::tolower(static_cast<unsigned char>(match[1].str()[0])) == 'w';
+  refuse(is_wait ? "error #21: ILLEGAL PARAMETER: wait takes simulated milliseconds, or idle: wait 500, wait idle"
+                 : "error #20: ILLEGAL CMD: " + match[1].str() + " is no command; Ctrl-D or the end of the input ends the console");
   return true;
+}
+
+/// A wait is acknowledged when it is over.
+bool Console::wait_before_acknowledging(runtime::Machine& machine) {
+  waits_ = false;
+  if (advance(machine)) return true;
+  refuse(outcome_.end == runtime::RunEnd::kInterrupted ? "error #39: NOT READY TO RUN: interrupted"
+                                                       : "error #39: NOT READY TO RUN: the limit of the run is reached; the console ends here");
+  return false;
 }
 
 void Console::take_line(runtime::Machine& machine, const std::string& line) {
   ++line_;
+  waits_ = false;
   wait_ms_ = options_.console_step_ms;
   wait_idle_ = false;
   const bool in_buffer = buffer_line_ > 0;
@@ -165,10 +185,12 @@ runtime::RunOutcome Console::run(runtime::Machine& machine, const runtime::RunLi
     if (options_.realtime) going = advance(machine);
     if (got == LineReader::Got::kNothing) continue;
     take_line(machine, line);
+    const bool advances = !options_.realtime || wait_idle_;
+    const bool waited = waits_ && advances;
+    if (waited) going = wait_before_acknowledging(machine) && going;
     std::printf("%c\n", kAck);
     if (std::fflush(stdout) != 0) break;  // nobody listens any more
-    const bool waits = !options_.realtime || wait_idle_;
-    if (going && waits) going = advance(machine);
+    if (going && advances && !waited) going = advance(machine);
   }
   if (buffer_line_ > 0) execute(machine, buffer_, buffer_line_);  // says that it is not closed
   std::fflush(stdout);

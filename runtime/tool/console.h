@@ -35,6 +35,7 @@ class Console {
   void take_line(runtime::Machine& machine, const std::string& line);
   void execute(runtime::Machine& machine, const std::string& text, int first_line);
   bool wait(const std::string& line);
+  bool wait_before_acknowledging(runtime::Machine& machine);
   bool advance(runtime::Machine& machine);
 
   const RunOptions& options_;
@@ -48,6 +49,7 @@ class Console {
   std::map<int, std::string> typed_;   // lines of buffers
   double wait_ms_ = 0;                 // what the last line lets pass
   bool wait_idle_ = false;
+  bool waits_ = false;                 // the last line was a wait
   double wall_start_ms_ = 0;
 };
 

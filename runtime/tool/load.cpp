@@ -36,6 +36,17 @@ std::string first_error(const compiler::Session& session, const std::vector<sour
   return error->message;
 }
 
+/// The lines of a text that began behind other lines of its file.
+void shift_lines(bytecode::Module& module, int by) {
+  const auto shift = [by](bytecode::SourceLine& source) {
+    if (source.line > 0) source.line += by;
+  };
+  for (bytecode::Program& program : module.programs) {
+    shift(program.source);
+    for (bytecode::LineEntry& entry : program.lines) shift(entry.source);
+  }
+}
+
 /// Prints what the session has to say and forgets it. True if there were errors.
 bool print_diagnostics(compiler::Session& session) {
   const bool errors = session.diagnostics().has_errors();
@@ -139,6 +150,7 @@ runtime::OnlineCompiler online_compiler(compiler::Session& session, ErrorPlace* 
     if (!reason.empty()) return reason;
     if (!module) return std::string("error #20: ILLEGAL CMD");
     if (const std::string invalid = bytecode::verify(*module); !invalid.empty()) return "internal error: " + invalid;
+    if (place && place->before > 0) shift_lines(*module, place->before);
     return std::move(*module);
   };
 }

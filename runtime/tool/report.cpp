@@ -43,7 +43,36 @@ ordered_json fault_json(const runtime::Machine& machine, const runtime::FaultRec
   return j;
 }
 
+ordered_json refusal_json(const std::string& command, const std::string& reason, std::size_t count) {
+  ordered_json j{{"command", command}, {"text", reason}};
+  if (count > 1) j["count"] = count;
+  return j;
+}
+
 }  // namespace
+
+bool Report::add_refusal(const std::string& command, const std::string& reason) {
+  const auto known = refusal_index_.find({command, reason});
+  if (known != refusal_index_.end()) {
+    ++refusals_[known->second].count;
+    return false;
+  }
+  if (refusals_.size() == kMostRefusals) {
+    ++more_refusals_;
+    return false;
+  }
+  refusal_index_.emplace(std::pair(command, reason), refusals_.size());
+  refusals_.push_back({command, reason});
+  return true;
+}
+
+std::string Report::repeated_refusals() const {
+  std::string out;
+  for (const Refusal& refusal : refusals_)
+    if (refusal.count > 1) out += fmt::format("refused {} times in all: {}: {}\n", refusal.count, refusal.command, refusal.reason);
+  if (more_refusals_ > 0) out += fmt::format("refused {} more times, for other commands or reasons\n", more_refusals_);
+  return out;
+}
 
 void Report::add(const runtime::MoveRecord& move) {
   ++move_count_;
@@ -101,7 +130,8 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
     j["jerk_join_count"] = join_count_;
   }
   j["refused"] = ordered_json::array();
-  for (const auto& [command, reason] : refusals_) j["refused"].push_back({{"command", command}, {"text", reason}});
+  for (const Refusal& refusal : refusals_) j["refused"].push_back(refusal_json(refusal.command, refusal.reason, refusal.count));
+  if (more_refusals_ > 0) j["refused"].push_back(refusal_json("", "others", more_refusals_));
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

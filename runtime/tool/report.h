@@ -1,6 +1,7 @@
 // What a run tells at its end: the JSON object and the statistics for people.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ class Report {
   void add(const runtime::JerkJoin& join);
   /// Of --check-limits, when the run is over.
   void add_limits(std::vector<runtime::LimitCheck::Row> rows) { limits_ = std::move(rows); }
-  void add_refusal(const std::string& command, const std::string& reason) { refusals_.emplace_back(command, reason); }
+  /// True for the first one of its kind; the others are counted. Beyond kMostRefusals kinds they are counted together.
+  bool add_refusal(const std::string& command, const std::string& reason);
 
   /// Moves in order of their start. The object of --json; see docs/pmac-run.md for its keys.
   std::string json(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
@@ -31,6 +33,8 @@ class Report {
   /// The lines of --stats.
   std::string text(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
                    double wall_s) const;
+  /// A line for every refusal that came again, with its count.
+  std::string repeated_refusals() const;
   /// Every move with what governed it, a line each; the first ones where there are many.
   std::string move_log(const runtime::Machine& machine) const;
   /// The log of output changes, a line each.
@@ -48,7 +52,11 @@ class Report {
   static constexpr std::size_t kMostJoins = 1000;   // kept; the others are counted
   std::size_t join_count_ = 0;
   std::vector<runtime::JerkJoin> joins_;
-  std::vector<std::pair<std::string, std::string>> refusals_;   // command, reason
+  static constexpr std::size_t kMostRefusals = 1000;
+  struct Refusal { std::string command, reason; std::size_t count = 1; };
+  std::vector<Refusal> refusals_;                                              // in order of their first time
+  std::map<std::pair<std::string, std::string>, std::size_t> refusal_index_;   // by command and reason, into refusals_
+  std::size_t more_refusals_ = 0;                                              // beyond kMostRefusals
   std::vector<runtime::LimitCheck::Row> limits_;
 };
 

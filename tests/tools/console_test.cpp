@@ -133,3 +133,52 @@ TEST_CASE("console: input may end anywhere", "[tools]") {
   CHECK(r.out.find("error #") != std::string::npos);
   CHECK(w.run("pmac-run", "--realtime x.pmc").code == 2);
 }
+
+TEST_CASE("console: a wait is acknowledged when it is over, also by the limit of the run", "[tools]") {
+  const Workspace w;
+  w.write("set_up.pmc", kSetUp);
+  w.write("input.txt", "wait 5\nwait\nwait 10ms\nwait .5 ;\nquit\nwait 99999\nP1\n");
+  const ToolResult r = w.run("pmac-run", "set_up.pmc --console --max-time 1 < input.txt");
+  CHECK(r.code == 4);
+  const auto answers = replies(r.out);
+  REQUIRE(answers.size() == 6);   // what stands behind the limit is not read
+  CHECK(answers[0].empty());
+  CHECK(answers[1] == "stdin:2:1: error #21: ILLEGAL PARAMETER: wait takes simulated milliseconds, or idle: wait 500, wait idle\n");
+  CHECK(answers[2].empty());
+  CHECK(answers[3].empty());
+  CHECK(answers[4].find("error #20: ILLEGAL CMD: quit is no command; Ctrl-D") != std::string::npos);
+  CHECK(answers[5].find("the limit of the run is reached") != std::string::npos);
+}
+
+TEST_CASE("console: warnings name the line that was typed", "[tools]") {
+  const Workspace w;
+  w.write("set_up.pmc", std::string(kSetUp) + "Sim.Motor[1].TriggerPos=-5 Sim.Motor[2].TriggerPos=-5\n");
+  w.write("input.txt", "P1=1\n#1hm\n\n#2hm #1j/ #2j/\n");
+  const ToolResult r = w.run("pmac-run", "set_up.pmc --console < input.txt");
+  CHECK(r.code == 0);
+  CHECK(r.err.find("stdin:2: warning: motor 1 moves away") != std::string::npos);
+  CHECK(r.err.find("stdin:4: warning: motor 2 moves away") != std::string::npos);
+}
+
+TEST_CASE("console: list takes its operand and no more", "[tools]") {
+  const Workspace w;
+  const auto r = session(w, "open prog Main\nX1\nX2\nclose\nlist prog Main P1\nlist prog main\nlist prog Main list plc 3\nlist\n&1bMain r\nlist pc,\nlist pc,1\n");
+  REQUIRE(r.size() == 11);
+  CHECK(r[4] == "X1\nX2\nP1=0\n");
+  CHECK(r[5].find("error #22: PROGRAM NOT IN BUFFER: there is no prog main") != std::string::npos);
+  CHECK(r[6].starts_with("X1\nX2\nstdin:7:"));
+  CHECK(r[7].find("error #21") != std::string::npos);
+  CHECK(r[8].empty());
+}
+
+TEST_CASE("console: no input ends it by a crash", "[tools]") {
+  const Workspace w;
+  std::string input;
+  for (const std::string rest : {"close", "clear", "cx X", "#1->", "a..b", "open prog 5", "%", "motor[1", "motor[31]..", ""})
+    for (const std::string word : {"backup", "system", "undefine", "list", "list prog", "define", "delete", "echo"}) input += word + " " + rest + "\n";
+  input += std::string(100'000, '#') + "\n" + std::string("P1\0P2\n", 6) + "\xff\xfe\x80\n" + std::string(3000, '(') + "\n#1..99999999p\nP1..99999999\nM1..5\nclose\nP1\n";
+  w.write("input.txt", input);
+  const ToolResult r = w.run("pmac-run", "--console < input.txt");
+  CHECK(r.code == 0);
+  CHECK(r.out.find("\nP1=0\n") != std::string::npos);
+}

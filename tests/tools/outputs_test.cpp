@@ -133,3 +133,15 @@ TEST_CASE("inputs are set at their time and outputs are logged with theirs", "[t
   CHECK(j["outputs"][0]["time_s"].get<double>() >= 1.575);
   CHECK(j["outputs"][1]["value"] == 0.0);
 }
+
+TEST_CASE("a command that is refused at every scan is reported once, and its count at the end", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "open plc 1\ncmd \"&1b77\"\nclose\n");
+  const ToolResult r = w.run("pmac-run", "a.pmc -e 'enable plc 1' --until 0.1 --json=summary");
+  CHECK(r.code == 3);
+  const std::string refusal = "a.pmc:2: cmd \"&1b77\": begin: error #22: PROGRAM NOT IN BUFFER: there is no motion program 77\n";
+  CHECK(r.err == "refused: " + refusal + "refused 100 times in all: " + refusal);   // a background scan every 1 ms
+  const auto j = nlohmann::json::parse(r.out);
+  REQUIRE(j["refused"].size() == 1);
+  CHECK(j["refused"][0]["count"] == 100);
+}

@@ -26,6 +26,8 @@ Frontend::~Frontend() = default;
 void Frontend::define(const std::string& name, const std::string& text) { state_->preprocessor.define(name, text); }
 void Frontend::know_name(const std::string& name) { state_->names.global.insert(name); }
 
+void Frontend::know_program(const std::string& name) { state_->names.programs.insert(name); }
+
 std::vector<std::string> Frontend::known_names() const { return {state_->names.global.begin(), state_->names.global.end()}; }
 
 void Frontend::record_lines() { state_->preprocessor.record_lines(); }

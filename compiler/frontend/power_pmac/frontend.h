@@ -20,6 +20,8 @@ class Frontend {
   void define(const std::string& name, const std::string& text);
   /// A name that is one word from now on, from an object file.
   void know_name(const std::string& name);
+  /// A program that can be begun by name.
+  void know_program(const std::string& name);
   /// Names that declarations of all texts so far mention, right or wrong.
   std::vector<std::string> known_names() const;
 

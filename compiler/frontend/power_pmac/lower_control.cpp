@@ -106,7 +106,7 @@ std::vector<ir::ExprPtr> Lowering::lower_plc_list(P::PlcListContext* list) {
   std::vector<ir::ExprPtr> numbers;
   for (P::PlcItemContext* item : list->plcItem()) {
     const source::Span span = span_of(item);
-    if (item->NAME()) numbers.push_back(std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}}));
+    if (item->NAME()) numbers.push_back(lower_program_named(token_of(item->NAME())));
     else if (item->STAR()) numbers.push_back(ir::make_number(std::numeric_limits<double>::infinity(), span));
     else if (item->expression()) numbers.push_back(lower_expression(item->expression()));
     else if (item->NUMBER().size() == 1) numbers.push_back(lower_number(token_of(item->NUMBER(0))));
@@ -117,8 +117,11 @@ std::vector<ir::ExprPtr> Lowering::lower_plc_list(P::PlcListContext* list) {
 
 ir::ExprPtr Lowering::lower_program_name(P::ProgramNameContext* name) {
   if (!name) return nullptr;
-  if (name->NUMBER()) return lower_number(token_of(name->NUMBER()));
-  return std::make_unique<ir::Expr>(ir::Expr{span_of(name), ir::NameUse{text_of(token_of(name->NAME())), false, {}}});
+  return name->NUMBER() ? lower_number(token_of(name->NUMBER())) : lower_program_named(token_of(name->NAME()));
+}
+
+ir::ExprPtr Lowering::lower_program_named(antlr4::Token* name) {
+  return std::make_unique<ir::Expr>(ir::Expr{span_of(name), ir::NameUse{text_of(name), false, {}}});
 }
 
 void Lowering::lower_program_control(P::ProgramControlContext* control, ir::Body& out) {
@@ -161,26 +164,40 @@ void Lowering::lower_text_out(P::ProgramControlContext* control, ir::Body& out) 
   out.push_back(ir::make_stmt(span, ir::Send{static_cast<int>(port), std::move(text), std::move(values)}));
 }
 
-/// begin1:500, begin:500, start3:500; on-line also start500.
+/// The coordinate systems that an item of begin or start names: 3 in start3:500, 1 to 3 in start1..3:500. None: the addressed ones.
+std::vector<ir::ExprPtr> Lowering::started_coords(P::StartItemContext* item) {
+  std::vector<ir::ExprPtr> coords;
+  if (item->NUMBER().size() == 2) append_range(token_of(item->NUMBER(0)), token_of(item->NUMBER(1)), span_of(item), coords);
+  else if (item->NUMBER().size() == 1) coords.push_back(lower_number(token_of(item->NUMBER(0))));
+  else if (online_) coords = addressed_coords(span_of(item));
+  else coords.push_back(nullptr);
+  return coords;
+}
+
+/// begin1:500, begin:500, start1,2:500, start3:500,4:501; on line also start500 and startMain.
 void Lowering::lower_start(P::ProgramControlContext* control, ir::Body& out) {
   const ControlVerb verb = control->BEGIN() ? ControlVerb::kBegin : ControlVerb::kStart;
-  for (P::StartItemContext* item : control->startItem()) {
+  const auto items = control->startItem();
+  const bool number_is_program = online_ && items.size() == 1 && items[0]->NUMBER().size() == 1 && !items[0]->programName();
+  std::vector<ir::ExprPtr> coords;   // that wait for their program
+  for (P::StartItemContext* item : items) {
     const source::Span span = span_of(item);
-    ir::ExprPtr coord;
-    ir::ExprPtr program = lower_program_name(item->programName());
-    const bool number_is_program = online_ && item->NUMBER() && !item->programName();
-    if (item->NAME()) program = std::make_unique<ir::Expr>(ir::Expr{span, ir::NameUse{text_of(token_of(item->NAME())), false, {}}});
-    else if (number_is_program) program = lower_number(token_of(item->NUMBER()));
-    else if (item->NUMBER()) coord = lower_number(token_of(item->NUMBER()));
-    if (!program) {
-      diagnostics_.error("PM3006", span, fmt::format("{} needs the program too, as in {}1:500", lower_case(text_of(control->start)), lower_case(text_of(control->start))));
-      continue;
+    if (number_is_program || item->NAME()) coords = online_ ? addressed_coords(span) : std::vector<ir::ExprPtr>();
+    else for (ir::ExprPtr& coord : started_coords(item)) coords.push_back(std::move(coord));
+    if (item->NAME() && coords.empty()) coords.push_back(nullptr);
+    const bool has_program = number_is_program || item->NAME() || item->programName();
+    if (!has_program) continue;
+    for (ir::ExprPtr& coord : coords) {
+      std::vector<ir::ExprPtr> arguments;
+      arguments.push_back(std::move(coord));
+      arguments.push_back(number_is_program ? lower_number(token_of(item->NUMBER(0))) : item->NAME() ? lower_program_named(token_of(item->NAME())) : lower_program_name(item->programName()));
+      add_control(verb, source::join(span_of(control->start), span), std::move(arguments), out);
     }
-    std::vector<ir::ExprPtr> arguments;
-    arguments.push_back(std::move(coord));
-    arguments.push_back(std::move(program));
-    add_control(verb, source::join(span_of(control->start), span), std::move(arguments), out);
+    coords.clear();
   }
+  if (coords.empty() || items.empty()) return;
+  const std::string word = lower_case(text_of(control->start));
+  diagnostics_.error("PM3006", span_of(items.back()), fmt::format("{} needs the program too, as in {}1:500 or {}1,2:500", word, word, word));
 }
 
 void Lowering::lower_jog(P::JogActionContext* jog, source::Span span, ir::Body& out) {

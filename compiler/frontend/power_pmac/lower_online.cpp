@@ -160,6 +160,7 @@ void Lowering::lower_online(P::OnlineContext* online, ir::Body& out) {
     return out.push_back(ir::make_stmt(span, ir::Report{std::move(value), name}));
   }
   if (online->CLOSE()) return;
+  if (online->LIST()) return lower_list(online->listed(), span, out);
   if (online->OTHER_COMMAND() || online->ECHO() || online->ROTARY()) return lower_system_command(online, out);
   if (online->programControl()) return lower_program_control(online->programControl(), out);
   if (online->onlineJog()) return lower_online_jog(online->onlineJog(), span, out);

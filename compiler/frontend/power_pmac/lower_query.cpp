@@ -78,7 +78,21 @@ void Lowering::lower_variable_range(P::OnlineContext* online, ir::Body& out) {
     out.push_back(ir::make_stmt(span, ir::Report{std::make_unique<ir::Expr>(ir::Expr{span, ir::Variable{variable->variable_class, n, nullptr, {}}}), fmt::format("{}{}", letter, n)}));
 }
 
-/// vers, echo 7, list prog 5, undefine all, define rotary 100: the words, in lower case, one blank between.
+/// list prog 5, list plc Cooling, list forward, list pc,3: the words, one blank between.
+void Lowering::lower_list(P::ListedContext* listed, source::Span span, ir::Body& out) {
+  std::string text = "list";
+  if (listed && !listed->exception) {
+    if (listed->kind) text += " " + lower_case(text_of(listed->kind));
+    if (listed->bufferName()) text += " " + text_of(listed->bufferName()->start);
+    if (listed->NAME()) text += " " + lower_case(text_of(token_of(listed->NAME())));
+    const bool counted = listed->NAME() && listed->stop != listed->NAME()->getSymbol();
+    if (counted) text += " ,";
+    if (listed->NUMBER()) text += (counted ? "" : " ") + text_of(token_of(listed->NUMBER()));
+  }
+  out.push_back(ir::make_stmt(span, ir::SystemCommand{text}));
+}
+
+/// vers, echo 7, undefine all, define rotary 100: the words, in lower case, one blank between.
 void Lowering::lower_system_command(P::OnlineContext* online, ir::Body& out) {
   std::string text;
   for (std::size_t i = online->start->getTokenIndex(); i <= online->stop->getTokenIndex(); ++i)

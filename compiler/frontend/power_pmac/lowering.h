@@ -87,6 +87,8 @@ class Lowering {
   std::vector<ir::ExprPtr> lower_plc_list(P::PlcListContext* list);
   void append_range(antlr4::Token* from, antlr4::Token* to, source::Span span, std::vector<ir::ExprPtr>& numbers);
   ir::ExprPtr lower_program_name(P::ProgramNameContext* name);
+  ir::ExprPtr lower_program_named(antlr4::Token* name);
+  std::vector<ir::ExprPtr> started_coords(P::StartItemContext* item);
   void add_control(ir::ControlVerb verb, source::Span span, std::vector<ir::ExprPtr> arguments, ir::Body& out);
   std::string string_value(const antlr4::Token& token) const;
 
@@ -111,6 +113,7 @@ class Lowering {
   void lower_axis_query(P::OnlineContext* online, ir::Body& out);
   void lower_variable_range(P::OnlineContext* online, ir::Body& out);
   void lower_system_command(P::OnlineContext* online, ir::Body& out);
+  void lower_list(P::ListedContext* listed, source::Span span, ir::Body& out);
   bool lower_report(std::string_view word, source::Span span, ir::Body& out);
   void lower_online_jog(P::OnlineJogContext* jog, source::Span span, ir::Body& out);
   void lower_series(P::OnlineListAssignmentContext* assignment, ir::Body& out);

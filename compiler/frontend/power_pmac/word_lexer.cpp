@@ -46,9 +46,9 @@ Table make_online_keywords() {
   for (const char* word : {"r", "s", "q", "h", "a", "k", "p", "v", "d", "f", "t", "g", "hm", "hmz", "save", "fsave", "reboot", "vers", "type", "cpu", "cid", "size",
                            "buffer", "date", "time", "free", "dir"})
     table[word] = T::COMMAND;
-  for (const char* word : {"list", "undefine", "system", "backup"}) table[word] = T::OTHER_COMMAND;
+  for (const char* word : {"undefine", "system", "backup"}) table[word] = T::OTHER_COMMAND;
   table.insert({{"b", T::ON_B}, {"j", T::ON_J}, {"out", T::ON_OUT}, {"clear", T::CLEAR}, {"cx", T::CX}, {"define", T::DEFINE},
-                {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}});
+                {"delete", T::DELETE}, {"lookahead", T::LOOKAHEAD}, {"echo", T::ECHO}, {"list", T::LIST}});
   return table;
 }
 
@@ -113,6 +113,7 @@ std::unique_ptr<antlr4::Token> WordLexer::nextToken() {
       hitEOF = false;  // the word may have reached the end of the text; its rest is still to be read
     }
     if (kind == T::NAME) declare(text_.substr(begin, word.length));
+    if (kind == T::NAME && last_[0] == T::PROG && last_[1] == T::OPEN) names_.programs.emplace(text_.substr(begin, word.length));
   }
   if (kind == T::NUMBER) last_number_is_zero_ = text_.substr(next->getStartIndex(), next->getStopIndex() + 1 - next->getStartIndex()) == "0";
   follow(kind, next->getLine());
@@ -127,6 +128,7 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
   if (last_[0] == T::DOT) return {T::MEMBER, word.size()};  // behind a dot
   const bool closes_all = (last_[0] == T::CLOSE && lower(word) == "all") || (last_[0] == T::ALL && lower(word) == "buffers");
   if (closes_all && line == last_line_) return {T::ALL, word.size()};  // close all buffers
+  if (program_length_ > 0 && begin == program_begin_) return {T::NAME, program_length_};
   if (axis_definition_) {
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
     if (kind) return {kind, run_length(word)};
@@ -135,6 +137,7 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
     axis_definition_ = false;
   }
   if (expect_name_ || (!is_rest && (names_.contains(word) || must_be_name(word, begin + word.size())))) return whole_name;
+  if (const Word command = split_program_name(word, begin); command.type) return command;
   const bool buffered = in_buffer_ || (line_is_buffered_ && line == buffered_line_);
   const Table& keywords = buffered ? buffer_keywords() : online_keywords();
   const bool command_letter = !buffered && word.size() == 1;  // may be a variable: P(5)
@@ -236,6 +239,23 @@ WordLexer::Word WordLexer::split_commands(std::string_view word, std::size_t beg
   for (std::size_t at = 0; at < word.size(); ++at)
     if (!is_command(word.substr(at, 1)) && lower(word.substr(at, 1)) != "j") return {0, 0};
   return {find(online_keywords(), word.substr(0, 1)), 1};
+}
+
+/// &1bMain and startMain, with r or s behind the name too: the command, when the name of a program is glued to it.
+WordLexer::Word WordLexer::split_program_name(std::string_view word, std::size_t begin) {
+  if (in_buffer_ || line_is_buffered_ || names_.programs.empty()) return {0, 0};
+  struct Row { std::string_view command; std::size_t type; };
+  for (const Row& row : {Row{"begin", T::BEGIN}, Row{"start", T::START}, Row{"b", T::ON_B}}) {
+    if (lower(word.substr(0, row.command.size())) != row.command) continue;
+    const std::string_view rest = word.substr(row.command.size());
+    const bool ends_in_run = rest.size() > 1 && find(online_keywords(), rest.substr(rest.size() - 1)) == T::COMMAND;
+    if (names_.programs.contains(rest)) program_length_ = rest.size();
+    else if (ends_in_run && names_.programs.contains(rest.substr(0, rest.size() - 1))) program_length_ = rest.size() - 1;
+    else continue;
+    program_begin_ = begin + row.command.size();
+    return {row.type, row.command.size()};
+  }
+  return {0, 0};
 }
 
 void WordLexer::declare(std::string_view name) {

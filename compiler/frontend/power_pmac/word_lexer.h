@@ -18,6 +18,7 @@ namespace pmac::compiler::power_pmac {
 struct DeclaredNames {
   std::set<std::string, std::less<>> global;
   std::set<std::string, std::less<>> local;  // of the open buffer
+  std::set<std::string, std::less<>> programs;  // of open prog: known behind b, begin and start glued to them
   bool contains(std::string_view name) const { return global.contains(name) || local.contains(name); }
 };
 
@@ -40,6 +41,7 @@ class WordLexer : public grammar::PowerPmacLexer {
   std::size_t exponent_length(std::size_t at) const;
   bool axis_before_variable(std::string_view run) const;
   Word split_commands(std::string_view word, std::size_t begin) const;
+  Word split_program_name(std::string_view word, std::size_t begin);
   void declare(std::string_view name);
   void follow(std::size_t kind, std::size_t line);
   void follow_declaration(std::size_t kind, std::size_t line);
@@ -64,6 +66,7 @@ class WordLexer : public grammar::PowerPmacLexer {
   std::size_t code_line_ = 0;       // line of the last code letter or call: E and O are letters behind it
   std::size_t split_end_ = 0;       // words that begin before this offset are the rest of a split word
   bool last_number_is_zero_ = false;
+  std::size_t program_begin_ = 0, program_length_ = 0;  // of the name in bMain
 };
 
 /// Names of the keywords that buffers know, for suggestions.

@@ -49,6 +49,7 @@ class ProgramBench : public runtime::SampleSink {
     options.observers.fault = [this](const runtime::FaultRecord& f) { faults.push_back(f); };
     options.observers.answer = [this](const std::string& answer) { answers.push_back(answer); };
     options.observers.refused = [this](const std::string& what, const std::string& why) { refusals.push_back(what + ": " + why); };
+    options.observers.warning = [this](bytecode::SourceLine, const std::string& warning) { warnings.push_back(warning); };
     machine = std::make_unique<runtime::Machine>(options);
     machine->add_sink(this);
     machine->add_sink(&statistics);
@@ -77,7 +78,7 @@ class ProgramBench : public runtime::SampleSink {
     return rows_[0];
   }
 
-  std::vector<std::string> diagnostics, refusals, answers;
+  std::vector<std::string> diagnostics, refusals, answers, warnings;
   std::vector<runtime::MoveRecord> moves;
   std::vector<runtime::OutputChange> outputs;
   std::vector<runtime::FaultRecord> faults;

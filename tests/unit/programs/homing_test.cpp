@@ -222,17 +222,16 @@ TEST_CASE("motors that are not active, not phased or open loop keep a program fr
   bench.run("#1j/ &1 r");
   CHECK(bench.refusals.empty());
   CHECK(bench.motor(1).final_mu == 1000);
-  bench.machine->command("#1out20");
-  CHECK(bench.refusals.size() == 1);
 }
 
-TEST_CASE("kill in a motion program ends it where it is", "[programs]") {
-  ProgramBench bench("a.pmc", kSetUp + "open prog 1\nlinear abs ta0 ts0 F10 X1\ndwell 0\nkill1\nX2\nclose\n");
-  bench.machine->at(500, "Coord[1].ProgActive Motor[1].AmpEna");
+TEST_CASE("a motion program that kills its motor at rest goes on to its next move, which is a fault", "[programs]") {
+  ProgramBench bench("a.pmc", kSetUp + "open prog 1\nlinear abs ta0 ts0 F10 X1\ndwell 0\nkill1,2\nP1=1\nX2\nclose\n");
+  bench.machine->at(500, "Coord[1].ProgActive Motor[1].AmpEna Motor[2].AmpEna P1");
   bench.run("&1 b1r");
-  CHECK(bench.faults.empty());
+  REQUIRE(bench.faults.size() == 1);
+  CHECK(bench.faults[0].fault.detail.find("error #43: MOTOR NOT CLOSED LOOP: motor 1") == 0);
   CHECK(bench.motor(1).final_mu == 1000);
-  CHECK(bench.answers == std::vector<std::string>{"Coord[1].ProgActive=0", "Motor[1].AmpEna=0"});
+  CHECK(bench.answers == std::vector<std::string>{"Coord[1].ProgActive=0", "Motor[1].AmpEna=0", "Motor[2].AmpEna=0", "P1=1"});
 }
 
 TEST_CASE("a step of a PLC program is one scan", "[programs]") {
@@ -248,5 +247,5 @@ TEST_CASE("a step of a PLC program is one scan", "[programs]") {
 TEST_CASE("status words", "[programs]") {
   ProgramBench bench("a.pmc", kSetUp);
   bench.run("#1?", until(10));
-  CHECK(bench.answers == std::vector<std::string>{"$0000f90000000000"});   // HomeComplete DesVelZero ClosedLoop AmpEna InPos PhaseFound
+  CHECK(bench.answers == std::vector<std::string>{"$0000f90080000000"});   // HomeComplete DesVelZero ClosedLoop AmpEna InPos PhaseFound
 }
