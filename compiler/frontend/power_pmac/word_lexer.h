@@ -21,6 +21,9 @@ struct DeclaredNames {
   bool contains(std::string_view name) const { return global.contains(name) || local.contains(name); }
 };
 
+/// Longest word; a longer one is not cut into its parts, which costs time with the square of its length, and is refused.
+inline constexpr std::size_t kMaxWord = 1000;
+
 class WordLexer : public grammar::PowerPmacLexer {
  public:
   /// text: what input holds. names: extended by the declarations that the lexer meets.
@@ -66,8 +69,6 @@ class WordLexer : public grammar::PowerPmacLexer {
   bool last_number_is_zero_ = false;
 };
 
-/// Names of the keywords that buffers know, for suggestions.
-const std::vector<std::string_view>& keyword_names();
 /// Name of a token type as the user writes it: 'while', ')', a number, a name.
 std::string describe_token(std::size_t type);
 /// Name of a token type in the grammar, or empty for operators.
