@@ -1,5 +1,5 @@
 // Answers to questions of command lines: positions, velocities, status words, definitions. Positions are answered in motor units from
-// home and in axis units; the ideal servo has no following error. Source: on-line commands, Software Reference Manual p62-76.
+// home and in axis units. Source: on-line commands, Software Reference Manual p62-76.
 #include <algorithm>
 #include <cmath>
 
@@ -50,9 +50,9 @@ std::string lower(std::string_view text) {
 }
 
 /// 1000x, 8660.25x-5000y+20000, i, s, 0.
-std::string definition_text(const kinematics::MotorDefinition& d) {
+std::string definition_text(const kinematics::MotorDefinition& d, Motor::Spindle spindle) {
   if (d.kind == Kind::kInverse) return "i";
-  if (d.kind == Kind::kSpindle) return "s";
+  if (d.kind == Kind::kSpindle) return spindle == Motor::Spindle::kClockOf0 ? "s0" : spindle == Motor::Spindle::kRealTime ? "s1" : "s";
   std::string text;
   for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
     const double c = d.coefficient_mu_uu[static_cast<std::size_t>(axis)];
@@ -69,7 +69,7 @@ std::string axis_definition(Machine::State& s, const Runner& runner, const Motor
   if (m.coord < 0) return fmt::format("#{}->0", m.number);
   const auto& definitions = s.coord(m.coord).map().definitions();
   const auto found = std::find_if(definitions.begin(), definitions.end(), [&](const auto& d) { return d.motor == m.number; });
-  const std::string text = found == definitions.end() ? "0" : definition_text(*found);
+  const std::string text = found == definitions.end() ? "0" : definition_text(*found, m.spindle);
   const std::string where = m.coord == runner.thread.coord || text == "0" ? "" : fmt::format("&{}", m.coord);
   return fmt::format("{}#{}->{}", where, m.number, text);
 }
@@ -85,29 +85,20 @@ std::string axes_text(const CoordSystem& c, const AxisVector& values) {
   return text;
 }
 
-/// Axis velocities per Coord[].FeedTime, from the commanded positions around now.
+/// Axis velocities per Coord[].FeedTime.
 AxisVector axis_velocity(Machine::State& s, CoordSystem& c, unsigned number) {
-  const double step_ms = s.period_ms();
-  std::vector<double> before(bytecode::kMaxMotors), after(bytecode::kMaxMotors);
-  for (const Motor& m : s.motors) {
-    const auto n = static_cast<std::size_t>(m.number);
-    before[n] = m.position_at(s.now_ms);
-    after[n] = before[n] + m.velocity_at(s.now_ms) * step_ms;
-  }
-  AxisVector from{}, to{}, velocity{};
-  if (!c.axes_from_motors(before, from) || !c.axes_from_motors(after, to)) return velocity;
-  const double feed_time_ms = s.elements.get(ElementId::kCoordFeedTime, number);
-  for (std::size_t axis = 0; axis < velocity.size(); ++axis) velocity[axis] = (to[axis] - from[axis]) / step_ms * feed_time_ms;
+  AxisVector velocity = c.commanded_velocity_uu_ms(s.now_ms);
+  for (double& value : velocity) value *= s.elements.get(ElementId::kCoordFeedTime, number);
   return velocity;
 }
 
 std::string coord_answer(Machine::State& s, Runner& runner, ControlVerb verb, int number) {
   CoordSystem& c = s.coord(number);
   switch (verb) {
-    case ControlVerb::kReportCoordPosition:
+    case ControlVerb::kReportCoordPosition: return axes_text(c, c.actual_position(s.now_ms));
     case ControlVerb::kReportCoordDesired: return axes_text(c, c.commanded_position(s.now_ms));
     case ControlVerb::kReportCoordVelocity: return axes_text(c, axis_velocity(s, c, static_cast<unsigned>(number)));
-    case ControlVerb::kReportCoordFollowingError: return axes_text(c, AxisVector{});
+    case ControlVerb::kReportCoordFollowingError: return axes_text(c, c.following_error_uu(s.now_ms));
     case ControlVerb::kReportCoordTarget: return axes_text(c, c.calculated_position());
     case ControlVerb::kReportCoordDistanceToGo: {
       AxisVector distance = c.calculated_position();
@@ -121,10 +112,10 @@ std::string coord_answer(Machine::State& s, Runner& runner, ControlVerb verb, in
 
 std::string motor_answer(Machine::State& s, Runner& runner, ControlVerb verb, const Motor& m) {
   switch (verb) {
-    case ControlVerb::kReportPosition:
+    case ControlVerb::kReportPosition: return double_text(m.actual_at(s.now_ms));
     case ControlVerb::kReportDesired: return double_text(m.position_at(s.now_ms));
-    case ControlVerb::kReportVelocity: return double_text(m.velocity_at(s.now_ms) * s.period_ms());
-    case ControlVerb::kReportFollowingError: return "0";
+    case ControlVerb::kReportVelocity: return double_text(m.actual_velocity_at(s.now_ms, s.period_ms()));
+    case ControlVerb::kReportFollowingError: return double_text(m.following_error_mu());
     case ControlVerb::kReportAxisDefinition: return axis_definition(s, runner, m);
     default: return status_word(s, runner, kMotorBits, m.number);
   }

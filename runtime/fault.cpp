@@ -22,6 +22,9 @@ int error_status(FaultKind kind) {
     case FaultKind::kInverseKinematics:
     case FaultKind::kForwardKinematics:
     case FaultKind::kUserStatus: return 255;
+    case FaultKind::kFollowingError:
+    case FaultKind::kOvertravel:
+    case FaultKind::kAmplifier: return 0;   // named in the motor's status, not here
     case FaultKind::kRunTime:
     case FaultKind::kBadTarget:
     case FaultKind::kNotReady:

@@ -33,6 +33,9 @@ enum class FaultKind {
   kCcNoIntersection,        // compensated paths that do not meet
   kCcNoMoves,               // nothing between lead-in and lead-out
   kNotSimulated,            // a statement that the simulation does not execute
+  kFollowingError,          // a motor's following error above Motor[].FatalFeLimit
+  kOvertravel,              // a motor ran into its overtravel switch
+  kAmplifier,               // a motor's amplifier reported a fault
 };
 
 struct [[nodiscard]] Fault {

@@ -55,10 +55,12 @@ void GatherUnit::add_row(const SampleBlock& block, int k, const std::function<do
   row_.push_back(block.time_ms(k) / 1000.0);
   for (const ElementAddress& column : columns_) {
     const auto motor = std::find(block.motors.begin(), block.motors.end(), static_cast<int>(column.index[0]));
-    const bool position = column.id == ElementId::kMotorDesPos || column.id == ElementId::kMotorActPos;
+    const bool commanded = column.id == ElementId::kMotorDesPos, actual = column.id == ElementId::kMotorActPos;
+    const auto row = motor - block.motors.begin();
     if (column.id == ElementId::kSysServoCount) row_.push_back(static_cast<double>(block.first_tick + k));
     else if (column.id == ElementId::kSysTime) row_.push_back(block.time_ms(k) / 1000.0);
-    else if (position && motor != block.motors.end()) row_.push_back(block.at(static_cast<int>(motor - block.motors.begin()), k));
+    else if (commanded && motor != block.motors.end()) row_.push_back(block.home_mu[static_cast<std::size_t>(row)] + block.at(static_cast<int>(row), k));
+    else if (actual && motor != block.motors.end()) row_.push_back(block.home_mu[static_cast<std::size_t>(row)] + block.actual_at(static_cast<int>(row), k));
     else row_.push_back(value(column));
   }
   sink.row(row_);

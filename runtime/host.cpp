@@ -181,6 +181,7 @@ class MachineHost : public Host {
   }
 
   Flow enable_gathering(Thread& thread, double value);
+  Flow set_home_position(Thread& thread, Motor& m, double value);
   void define_axis(Thread& thread, const bytecode::AxisDefinition& definition);
   void define_pointer(const bytecode::Module& module, const bytecode::PointerDefinition& definition);
   void report_element(const bytecode::ElementRef& ref, double value);
@@ -198,7 +199,8 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     s_.refuse(element_text(a), "error #70: " + text);
     return Flow::kContinue;
   }
-  if (info.access == ElementAccess::kSaved && !std::isfinite(value)) {
+  const bool simulated = a.id >= ElementId::kSimMotorTriggerPos && a.id <= ElementId::kSimMotorFriction;
+  if ((info.access == ElementAccess::kSaved || simulated) && !std::isfinite(value)) {
     const std::string text = fmt::format("{} cannot be set to {}", element_text(a), std::isnan(value) ? "nan" : "an infinite value");
     if (runner.kind != RunnerKind::kOnline) return fault(thread, FaultKind::kRunTime, text);
     s_.refuse(element_text(a), "error #23: OUT OF RANGE NUMBER: " + text);
@@ -232,7 +234,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
       return Flow::kContinue;
     case ElementId::kLdataGoBack: thread.go_back = value > 0 && value < 1e9 ? static_cast<int>(value) : 0; return Flow::kContinue;
     case ElementId::kLdataCmdStatus: thread.command_status = value > -1e9 && value < 1e9 ? static_cast<int>(value) : 0; return Flow::kContinue;
-    case ElementId::kMotorHomePos: s_.motors[a.index[0]].home_position_mu = value; return Flow::kContinue;
+    case ElementId::kMotorHomePos: return set_home_position(thread, s_.motors[a.index[0]], value);
     case ElementId::kMotorHomeComplete: s_.motors[a.index[0]].home_complete = value != 0; return Flow::kContinue;
     case ElementId::kGatherEnable: return enable_gathering(thread, value);
     case ElementId::kCoordLHSize: s_.coord(static_cast<int>(a.index[0])).lookahead_buffer = value >= 1 && value <= 1e8 ? static_cast<int>(value) : 0; break;
@@ -246,7 +248,11 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kCoordErrorStatus:
       s_.elements.assign(a, value);
       if (value == 0) return Flow::kContinue;
-      if (runner.kind == RunnerKind::kKinematics) { runner.aborted = true; return Flow::kStop; }
+      if (runner.kind == RunnerKind::kKinematics && runner.number == static_cast<int>(a.index[0])) {
+        runner.aborted = true;
+        runner.error_status = value;
+        return Flow::kStop;
+      }
       if (s_.coord(static_cast<int>(a.index[0])).program_running()) {
         CoordSystem& c = s_.coord(static_cast<int>(a.index[0]));
         if (&c.runner() == &runner)
@@ -257,7 +263,17 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     default: break;
   }
   s_.elements.assign(a, value);
-  if (a.id == ElementId::kSimMotorTriggerPos) trigger_moved(s_, s_.motors[a.index[0]]);
+  const bool of_trigger = a.id >= ElementId::kSimMotorTriggerPos && a.id <= ElementId::kSimMotorFlagInvert;
+  if (of_trigger) trigger_moved(s_, s_.motors[a.index[0]]);
+  return Flow::kContinue;
+}
+
+/// The motor stands where it stands, and its position from home changes.
+Flow MachineHost::set_home_position(Thread& thread, Motor& m, double value) {
+  if (m.moving() || !std::isfinite(value))
+    return fault(thread, FaultKind::kRunTime, fmt::format("Motor[{}].HomePos cannot be set to {} {}", m.number, value, m.moving() ? "while the motor moves" : ""));
+  m.position_mu += m.home_position_mu - value;
+  m.home_position_mu = value;
   return Flow::kContinue;
 }
 

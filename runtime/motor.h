@@ -1,14 +1,16 @@
-// One simulated motor: where its commanded position comes from, and its status. Positions are in motor units from home. The servo
-// loop is ideal: the actual position is the commanded one.
+// One simulated motor: where its commanded position comes from, and its status. Positions are in motor units from home unless they say
+// raw: those count from power-on. Without a plant (Sim.Motor[].Plant) the actual position is the commanded one.
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 
 #include "compiler/bytecode/bytecode.h"
 #include "runtime/coordinate/time_base.h"
 #include "runtime/motion/profile.h"
+#include "runtime/servo/servo_loop.h"
 
 namespace pmac::runtime {
 
@@ -39,9 +41,31 @@ struct Motor {
   bool kill_at_rest = false;       // adisable: a delayed kill when it has come to rest
   double kill_ms = kNever;         // of a delayed kill
   bool in_use = false;             // belongs to a coordinate system, or has moved
-  int coord = -1;                  // coordinate system it is defined in, -1 none
+  int coord = -1;                  // coordinate system it is defined in with an axis, -1 none
+  int shares_with = -1;            // whose time base and faults it shares: coord, or that of its null definition
+  /// Clock of a spindle: that of its coordinate system, of coordinate system 0, or the machine's time.
+  enum class Spindle { kNo, kOwnClock, kClockOf0, kRealTime };
+  Spindle spindle = Spindle::kNo;
+
+  // --- the servo and its inputs, at the last servo interrupt (servo/servo_cycle.h) ------------------------------------------
+  ServoLoop loop;
+  bool has_plant = false;
+  double commanded_raw_mu = 0;
+  double open_loop_share = 0;      // out: of the largest output, while the loop is open and the amplifier enabled
+  std::int64_t cycles_in_band = 0; // consecutive interrupts at rest within InPosBand
+  bool following_warning = false, following_fatal = false, amplifier_fault = false;
+  bool plus_limit = false, minus_limit = false;   // overtravel switches
+  enum class LimitStop { kNone, kSwitch, kPlusPosition, kMinusPosition };
+  LimitStop limit_stop = LimitStop::kNone;        // what it has stopped at, or is stopping at, until it is told to move again
+  LimitStop clipped_at = LimitStop::kNone;        // its profile ends at a software limit instead of its target
 
   bool moving() const { return source != Source::kRest; }
+  /// Programs of its coordinate system move it.
+  bool has_axis() const { return coord >= 0 && spindle == Spindle::kNo; }
+  double actual_at(double time_ms) const { return has_plant ? loop.position_mu() - home_position_mu : position_at(time_ms); }
+  /// Motor units a servo cycle.
+  double actual_velocity_at(double time_ms, double period_ms) const { return has_plant ? loop.velocity_mu_cycle() : velocity_at(time_ms) * period_ms; }
+  double following_error_mu() const { return has_plant && closed_loop ? loop.error_mu() : 0; }
 
   bool seeks_trigger() const { return task == Task::kSeekTrigger || task == Task::kSeekHome; }
   bool homing() const { return task == Task::kSeekHome || task == Task::kReturnHome; }
@@ -73,6 +97,11 @@ struct Motor {
     task = Task::kNone;
     source = Source::kProfile;
     in_use = true;
+    limit_stop = clipped_at = LimitStop::kNone;
+  }
+  void follow_path() {
+    source = Source::kPath;
+    limit_stop = clipped_at = LimitStop::kNone;
   }
   void rest(double time_ms, double at_mu) {
     if (source != Source::kRest) rest_since_ms = time_ms;
@@ -81,16 +110,18 @@ struct Motor {
     position_mu = at_mu;
     velocity_mu_ms = 0;
   }
-  /// Open loop; the ideal motor stands where it is.
+  /// Open loop. A motor without a plant stands where it is; with one it coasts, and its commanded position follows it.
   void kill(double time_ms) {
-    rest(time_ms, position_at(time_ms));
+    rest(time_ms, actual_at(time_ms));
     closed_loop = amplifier_enabled = kill_at_rest = false;
     kill_ms = kNever;
+    open_loop_share = 0;
   }
   void enable() {
     closed_loop = amplifier_enabled = true;
     kill_at_rest = false;
     kill_ms = kNever;
+    following_fatal = amplifier_fault = false;
   }
   /// homez: home is where the motor stands.
   void home_here(double time_ms) {

@@ -94,7 +94,7 @@ Flow pset(const Call& call) {
 }
 
 /// disable kills at once, ddisable after the brakes' delay, adisable when the motors have come to rest and after that delay. The program is
-/// aborted by all of them. The ideal motors stand where they are killed.
+/// aborted by all of them.
 Flow disable_motors(const Call& call, CoordSystem& coord, int number) {
   const double now = call.s.now_ms;
   const Flow flow = abort_coord(call, coord, number);
@@ -115,7 +115,8 @@ Flow program_verb(const Call& call, CoordSystem& coord, int number) {
   switch (call.verb) {
     case ControlVerb::kRun: call.refusal = coord.run(now); break;
     case ControlVerb::kResume: call.refusal = coord.resume(now); break;
-    case ControlVerb::kForward: call.refusal = coord.resume(now); break;
+    case ControlVerb::kForward: call.refusal = coord.forward_on_path(now); break;
+    case ControlVerb::kRetrace: call.refusal = coord.retrace(now); break;
     case ControlVerb::kHold: call.refusal = coord.hold(now); break;
     case ControlVerb::kQuickStop: call.refusal = coord.quick_stop(now); break;
     case ControlVerb::kPause:
@@ -144,15 +145,13 @@ Flow coord_verb(const Call& call) {
     case ControlVerb::kRun:
     case ControlVerb::kResume:
     case ControlVerb::kForward:
+    case ControlVerb::kRetrace:
     case ControlVerb::kHold:
     case ControlVerb::kQuickStop:
     case ControlVerb::kPause:
     case ControlVerb::kStep: return program_verb(call, coord, number);
     case ControlVerb::kTimeBase: call.refusal = coord.set_time_base(call.s.now_ms, call.argument(1) / 100); return Flow::kContinue;
     case ControlVerb::kReportTimeBase: call.s.answer(fmt::format("{}", coord.time_base().rate_at(call.s.now_ms) * 100)); return Flow::kContinue;
-    case ControlVerb::kRetrace:
-      call.refusal = "error #20: ILLEGAL CMD: retracing the path backwards (<) is not simulated; > and r go on forwards";
-      return Flow::kContinue;
     case ControlVerb::kPread:
     case ControlVerb::kVread:
     case ControlVerb::kDread:
@@ -181,14 +180,14 @@ bool may_jog(const Call& call, const Motor& m) {
     return false;
   }
   if (!m.closed_loop && call.verb != ControlVerb::kPhase) call.refusal = fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}", m.number);
-  else if (m.coord >= 0 && call.s.coord(m.coord).program_running())
+  else if (m.has_axis() && call.s.coord(m.coord).program_running())
     call.refusal = fmt::format("error #38: PROGRAM RUNNING: motor {} belongs to coordinate system {}, which executes a program", m.number, m.coord);
   return call.refusal.empty();
 }
 
 /// A program that moves the motor is aborted. dkill: the brake engages first.
 Flow kill(const Call& call, Motor& m) {
-  const bool in_program = m.coord >= 0 && call.s.coord(m.coord).program_running();
+  const bool in_program = m.has_axis() && call.s.coord(m.coord).program_running();
   const Flow flow = in_program ? abort_coord(call, call.s.coord(m.coord), m.coord) : Flow::kContinue;
   if (call.verb == ControlVerb::kKill) m.kill(call.s.now_ms);
   else delay_kill(call.s, m, call.s.now_ms);
@@ -201,15 +200,20 @@ void phase(const Call& call, Motor& m) {
   m.enable();
 }
 
-/// Open loop with no output leaves an ideal motor where it is; what it does under an output is mechanics, which is not simulated.
+/// Open loop with an output in % of MaxDac, which needs a mass to drive. With none a motor stays where it is.
 Flow open_loop(const Call& call, Motor& m) {
-  if (call.argument(1) != 0)
-    call.refusal = fmt::format("error #20: ILLEGAL CMD: an open-loop output of {} % is not simulated; the motors have no mechanics (out0 is)", call.argument(1));
+  const double percent = call.argument(1);
+  const bool plant = call.s.elements.get(ElementId::kSimMotorPlant, static_cast<unsigned>(m.number)) != 0;
+  if (!(percent >= -100 && percent <= 100)) call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: an output of {} %", percent);
+  else if (percent != 0 && !plant)
+    call.refusal = fmt::format("error #20: ILLEGAL CMD: an open-loop output of {} % needs a motor that can move; give it a plant: Sim.Motor[{}].Plant=1", percent, m.number);
   if (!call.refusal.empty()) return Flow::kContinue;
-  const bool in_program = m.coord >= 0 && call.s.coord(m.coord).program_running();
+  const bool in_program = m.has_axis() && call.s.coord(m.coord).program_running();
   const Flow flow = in_program ? abort_coord(call, call.s.coord(m.coord), m.coord) : Flow::kContinue;
   m.kill(call.s.now_ms);
   m.amplifier_enabled = true;
+  m.open_loop_share = percent / 100;
+  m.in_use = m.in_use || percent != 0;
   return flow;
 }
 

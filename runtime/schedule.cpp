@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motor_faults.h"
 #include "runtime/motor_moves.h"
+#include "runtime/servo/servo_cycle.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -23,6 +25,12 @@ constexpr double kProgressMs = 1000.0;
 double background_period_ms(const Machine::State& s) {
   const double sleep_us = s.elements.get(ElementId::kSysBgSleepTime);
   return std::max(sleep_us / 1000.0, kDefaultBackgroundMs);
+}
+
+/// Rows of `wide` values become rows of `narrow`.
+void shorten_rows(std::vector<double>& rows, std::size_t count, std::size_t wide, std::size_t narrow) {
+  for (std::size_t u = 1; u < count; ++u)
+    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(u * wide), narrow, rows.begin() + static_cast<std::ptrdiff_t>(u * narrow));
 }
 
 bool is_foreground(const Machine::State& s, int plc) { return plc <= s.elements.get(ElementId::kSysMaxRtPlc); }
@@ -74,44 +82,70 @@ double Machine::State::next_event_ms(double limit_ms) {
   return std::max(next, now_ms);
 }
 
-void Machine::State::sample_to(double time_ms) {
-  if (tick_ms(tick + 1) > time_ms) return;
-  std::vector<int>& used = block_motors;
-  used.clear();
+/// Commanded positions of block_motors at count interrupts, into block_rows.
+void Machine::State::command_rows(double start_ms, int count) {
+  const auto n = static_cast<std::size_t>(count);
+  for (std::size_t u = 0; u < block_motors.size(); ++u) {
+    const Motor& m = motors[static_cast<std::size_t>(block_motors[u])];
+    for (std::size_t k = 0; k < n; ++k) block_rows[u * n + k] = m.position_at(start_ms + static_cast<double>(k) * period_ms());
+  }
+  for (const auto& c : coords) {
+    if (!c->on_path()) continue;
+    const std::vector<int>& path_motors = c->path_motors();
+    c->sample(start_ms, period_ms(), count, std::span<double>(block_path.data(), path_motors.size() * n));
+    for (std::size_t i = 0; i < path_motors.size(); ++i) {
+      const auto at = static_cast<std::size_t>(std::find(block_motors.begin(), block_motors.end(), path_motors[i]) - block_motors.begin());
+      std::copy_n(block_path.begin() + static_cast<std::ptrdiff_t>(i * n), n, block_rows.begin() + static_cast<std::ptrdiff_t>(at * n));
+    }
+  }
+}
+
+/// The servos follow block_rows; answers how many interrupts count, to which the rows are shortened. actual: block_rows or block_actual.
+int Machine::State::follow_rows(double start_ms, int count, std::vector<double>& actual) {
+  const int reached = run_servos(*this, block_motors, count, block_rows, actual);
+  if (reached < count) {
+    shorten_rows(block_rows, block_motors.size(), static_cast<std::size_t>(count), static_cast<std::size_t>(reached));
+    if (&actual != &block_rows) shorten_rows(actual, block_motors.size(), static_cast<std::size_t>(count), static_cast<std::size_t>(reached));
+  }
+  for (const auto& c : coords)
+    if (c->on_path()) c->follow_samples(start_ms, period_ms(), reached, count, block_motors, block_rows);
+  return reached;
+}
+
+void Machine::State::deliver(const SampleBlock& block) {
+  for (SampleSink* sink : sinks) sink->take(block);
+  if (gather.enabled())
+    gather.take(block, static_cast<int>(elements.get(ElementId::kGatherPeriod)),
+                static_cast<std::int64_t>(elements.get(ElementId::kGatherMaxSamples)),
+                [this](const ElementAddress& a) { return read_element_value(*this, *online, a); });
+}
+
+double Machine::State::sample_to(double time_ms) {
+  if (tick_ms(tick + 1) > time_ms) return time_ms;
+  block_motors.clear();
   for (const Motor& m : motors)
-    if (m.in_use) used.push_back(m.number);
-  const bool single = gather.enabled() && gather.needs_single_ticks();
-  std::vector<double>& rows = block_rows;
-  std::vector<double>& path = block_path;
-  rows.resize(bytecode::kMaxMotors * kBlockTicks);
-  path.resize(bytecode::kMaxMotors * kBlockTicks);
+    if (m.in_use) block_motors.push_back(m.number);
+  block_home.clear();
+  for (int motor : block_motors) block_home.push_back(motors[static_cast<std::size_t>(motor)].home_position_mu);
+  const bool plants = any_plant(*this, block_motors), single = gather.enabled() && gather.needs_single_ticks();
+  block_rows.resize(bytecode::kMaxMotors * kBlockTicks);
+  block_path.resize(bytecode::kMaxMotors * kBlockTicks);
+  if (plants) block_actual.resize(block_rows.size());
+  std::vector<double>& actual = plants ? block_actual : block_rows;
   while (tick_ms(tick + 1) <= time_ms) {
     int count = 1;
     while (!single && count < kBlockTicks && tick_ms(tick + 1 + count) <= time_ms) ++count;
     const double start_ms = tick_ms(tick + 1);
-    const auto n = static_cast<std::size_t>(count);
-    for (std::size_t u = 0; u < used.size(); ++u) {
-      const Motor& m = motors[static_cast<std::size_t>(used[u])];
-      for (std::size_t k = 0; k < n; ++k) rows[u * n + k] = m.position_at(start_ms + static_cast<double>(k) * period_ms());
-    }
-    for (const auto& c : coords) {
-      if (!c->on_path()) continue;
-      const std::vector<int>& path_motors = c->path_motors();
-      c->sample(start_ms, period_ms(), count, std::span<double>(path.data(), path_motors.size() * n));
-      for (std::size_t i = 0; i < path_motors.size(); ++i) {
-        const auto at = static_cast<std::size_t>(std::find(used.begin(), used.end(), path_motors[i]) - used.begin());
-        std::copy_n(path.begin() + static_cast<std::ptrdiff_t>(i * n), n, rows.begin() + static_cast<std::ptrdiff_t>(at * n));
-      }
-    }
-    const SampleBlock block{tick + 1, period_ms(), count, used, std::span<const double>(rows.data(), used.size() * n)};
-    tick += count;
+    command_rows(start_ms, count);
+    const int kept = follow_rows(start_ms, count, actual);
+    const std::size_t values = block_motors.size() * static_cast<std::size_t>(kept);
+    const SampleBlock block{tick + 1, period_ms(), kept, block_motors, {block_rows.data(), values}, {actual.data(), values}, block_home};
+    tick += kept;
     now_ms = std::max(now_ms, tick_ms(tick));
-    for (SampleSink* sink : sinks) sink->take(block);
-    if (gather.enabled())
-      gather.take(block, static_cast<int>(elements.get(ElementId::kGatherPeriod)),
-                  static_cast<std::int64_t>(elements.get(ElementId::kGatherMaxSamples)),
-                  [this](const ElementAddress& a) { return read_element_value(*this, *online, a); });
+    deliver(block);
+    if (!trips.empty()) return now_ms;
   }
+  return time_ms;
 }
 
 void Machine::State::scan(int number, double) {
@@ -150,6 +184,7 @@ void Machine::State::scan_plcs(double time_ms) {
 }
 
 void Machine::State::service(double time_ms) {
+  react_to_trips(*this);
   for (Motor& m : motors) service_motor(*this, m);
   programs_execute = true;
   for (const auto& c : coords) c->service(time_ms);
@@ -182,8 +217,7 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
       next_progress_ms = now_ms + kProgressMs;
     }
     const double next = next_event_ms(std::min({stop_ms, idle_end_ms, next_progress_ms}));
-    sample_to(next);
-    now_ms = next;
+    now_ms = sample_to(next);
   }
   outcome.time_ms = now_ms;
   if (limits.more_follows) return outcome;

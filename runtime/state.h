@@ -52,6 +52,14 @@ struct Configuration {
   std::vector<ProgramHandle> forward, inverse;       // by coordinate system
 };
 
+/// What stopped a motor at a servo interrupt. value_mu: following error, actual or commanded position; of a trigger its place (raw).
+struct ServoTrip {
+  enum class Kind { kFollowingError, kAmplifier, kPlusSwitch, kMinusSwitch, kPlusPosition, kMinusPosition, kTrigger };
+  int motor = 0;
+  Kind kind{};
+  double value_mu = 0;
+};
+
 struct Machine::State {
   explicit State(MachineOptions options);
   ~State();
@@ -86,7 +94,8 @@ struct Machine::State {
   std::map<int, Addresses> command_addresses;        // by sender_key()
   std::vector<SampleSink*> sinks;
   std::vector<int> block_motors;                     // of sample_to(), kept so that a block costs no allocation
-  std::vector<double> block_rows, block_path;
+  std::vector<double> block_rows, block_path, block_actual, block_home;
+  std::vector<ServoTrip> trips;                      // of the last servo interrupt, until service() has acted on them
 
   // bookkeeping
   std::uint64_t instructions = 0;
@@ -137,7 +146,11 @@ struct Machine::State {
   // schedule.cpp
   RunOutcome run(const RunLimits& limits);
   double next_event_ms(double limit_ms);
-  void sample_to(double time_ms);
+  /// Answers the time that has been reached: time_ms, or earlier where a servo has tripped.
+  double sample_to(double time_ms);
+  void command_rows(double start_ms, int count);
+  int follow_rows(double start_ms, int count, std::vector<double>& actual);
+  void deliver(const SampleBlock& block);
   void service(double time_ms);
   void scan_plcs(double time_ms);
   void scan(int plc, double time_ms);

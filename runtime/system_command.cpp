@@ -143,6 +143,7 @@ std::string undefine(const SystemCall& call) {
     bytecode::AxisDefinition null;
     null.kind = bytecode::AxisDefinitionKind::kNull;
     if (const std::string refusal = call.s.coord(m.coord).define(null, m.number); !refusal.empty()) return refusal;
+    m.shares_with = -1;
   }
   return {};
 }

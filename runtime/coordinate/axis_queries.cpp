@@ -1,6 +1,5 @@
 // pread, vread, dread, fread and tread: what the axes of a coordinate system do at the present time, for programs. Source: User's
-// Manual p513-516; values go to D(axis index) and their mask to D32. The servo is ideal, so that the actual position is the
-// commanded one and the following error is 0.
+// Manual p513-516; values go to D(axis index) and their mask to D32. pread answers actual positions, dread commanded ones.
 #include <fmt/format.h>
 
 #include "compiler/bytecode/control.h"
@@ -23,7 +22,8 @@ AxisVector axis_values(Machine::State& s, CoordSystem& coord, int number, Contro
       for (double& value : velocity) value *= feed_time_ms;
       return velocity;
     }
-    case ControlVerb::kFread: return {};
+    case ControlVerb::kFread: return coord.following_error_uu(s.now_ms);
+    case ControlVerb::kPread: return coord.actual_position(s.now_ms);
     case ControlVerb::kTread: return coord.calculated_position();
     default: return coord.commanded_position(s.now_ms);
   }
@@ -33,7 +33,7 @@ AxisVector axis_values(Machine::State& s, CoordSystem& coord, int number, Contro
 
 std::string read_axes(Machine::State& s, int number, ControlVerb verb, double wanted_axes, Thread& thread) {
   CoordSystem& coord = s.coord(number);
-  if (!coord.map().solvable() && !coord.forward) return fmt::format("error #39: NOT READY TO RUN: coordinate system {}: {}", number, coord.map().reason());
+  if (!coord.map().solvable() && !coord.has_forward()) return fmt::format("error #39: NOT READY TO RUN: coordinate system {}: {}", number, coord.map().reason());
   const AxisVector values = axis_values(s, coord, number, verb);
   const bool all = !(wanted_axes >= 0 && wanted_axes <= 4294967295.0);
   const std::uint32_t mask = coord.axes_with_motors() & (all ? 0xffffffffu : static_cast<std::uint32_t>(wanted_axes));

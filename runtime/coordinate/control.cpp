@@ -1,12 +1,13 @@
 // Starting, stopping and going on: program control and time base of a coordinate system. Source: User's Manual p689-698; refusals,
-// Software Reference Manual p77. Inferred: a step counts a dwell and a delay as a move; abort ramps by the machine's time, whatever
-// the time base.
+// Software Reference Manual p77. Inferred: a step counts a dwell and a delay as a move; a pause among pvt moves waits for one that ends at
+// rest; abort ramps by the machine's time, whatever the time base.
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motor_moves.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kMostRate = 1000;             // 100000 %
 constexpr double kSamePlace_mu = 1e-6;
+constexpr const char* kAtLimit = "error #39: NOT READY TO RUN: the program is suspended at a software position limit; abort it first";
 
 }  // namespace
 
@@ -24,6 +26,7 @@ constexpr double kSamePlace_mu = 1e-6;
 
 std::string CoordSystem::begin(std::uint32_t number, std::int64_t label) {
   if (program_running()) return "error #38: PROGRAM RUNNING: abort it first";
+  if (limit_fault_) return kAtLimit;
   rotary_pointed_ = number == 0;
   rotary_state_ = RotaryState::kNone;
   if (rotary_pointed_) {
@@ -69,7 +72,7 @@ std::string CoordSystem::start_at(const ProgramHandle& program, std::int64_t lab
   runner_.thread.q = q.data();
   machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
   block_ = {};
-  stop_requested_ = pause_requested_ = stepping_ = step_block_ = false;
+  stop_requested_ = pause_requested_ = pause_at_rest_ = stepping_ = step_block_ = false;
   sync_.clear();
   phase_ = Phase::kCalculating;
   resume_ms_ = time_ms;
@@ -87,7 +90,8 @@ std::string CoordSystem::why_not_ready(bool at_rest) const {
     if (machine_.elements.get(ElementId::kMotorPhaseFound, n) == 0)
       return fmt::format("error #44: MOTOR NOT PHASED: motor {}; give #{}$ first", motor, motor);
     if (!m.closed_loop) return fmt::format("error #43: MOTOR NOT CLOSED LOOP: motor {}; give #{}j/ or enable first", motor, motor);
-    if (at_rest && m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
+    if (m.plus_limit && m.minus_limit) return fmt::format("error #39: NOT READY TO RUN: both overtravel switches of motor {} are tripped", motor);
+    if (at_rest && m.has_axis() && m.moving()) return fmt::format("error #39: NOT READY TO RUN: motor {} is moving", motor);
   }
   return {};
 }
@@ -100,6 +104,7 @@ std::string CoordSystem::pause(double time_ms) {
   const bool waits_for_interrupt = phase_ == Phase::kToRest && after_rest_ == AfterRest::kNextInterrupt;
   if (waits_for_interrupt) after_rest_ = AfterRest::kPause;
   else if (!between_items) pause_requested_ = true;
+  else if (pvt_goes_on()) pause_at_rest_ = true;
   else if (auto fault = come_to_rest(time_ms, AfterRest::kPause)) fail(time_ms, std::move(*fault));
   return {};
 }
@@ -107,7 +112,7 @@ std::string CoordSystem::pause(double time_ms) {
 void CoordSystem::pause_here(double time_ms) {
   phase_ = Phase::kPaused;
   resume_ms_ = kNever;
-  pause_requested_ = stepping_ = false;
+  pause_requested_ = pause_at_rest_ = stepping_ = false;
   note_pause(time_ms);
 }
 
@@ -121,10 +126,11 @@ void CoordSystem::note_pause(double time_ms) {
 }
 
 std::string CoordSystem::go_on_after_pause(double time_ms, bool one_step) {
+  if (limit_fault_) return kAtLimit;
   if (std::string refusal = why_not_ready(true); !refusal.empty()) return refusal;
   for (std::size_t i = 0; i < motors_.size() && i < paused_mu_.size(); ++i) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motors_[i])];
-    if (m.coord == number_ && std::abs(m.position_at(time_ms) - paused_mu_[i]) > kSamePlace_mu)
+    if (m.coord == number_ && m.has_axis() && std::abs(m.position_at(time_ms) - paused_mu_[i]) > kSamePlace_mu)
       return fmt::format("error #46: COORD JOGGED OUT OF POSITION: motor {}; jog it back (#{}j=), or give pmatch", m.number, m.number);
   }
   stepping_ = one_step;
@@ -150,8 +156,9 @@ std::string CoordSystem::resume(double time_ms) {
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kNone || hold == TimeBase::Hold::kResuming)
     return fmt::format("error #39: NOT READY TO RUN: the program of coordinate system {} is neither paused nor held", number_);
+  if (retracing()) return forward_on_path(time_ms);
   if (quick_stopped() && on_path_ && lookahead_) {
-    quick_stopped_ = false;
+    shaped_by_slew_ = quick_stopped_ = false;
     begin_shaping(Shaping::kFaster);
     return {};
   }
@@ -181,6 +188,7 @@ std::string CoordSystem::set_time_base(double time_ms, double rate) {
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordTimeBaseSlew, slope_per_ms); !refusal.empty()) return refusal;
   time_base_.set_override(time_ms, rate, slope_per_ms);
+  if (shaping_ != Shaping::kNone) shape_at_ms_ = machine_.tick_ms(machine_.tick + 1);
   clock_changed(time_ms);
   return {};
 }
@@ -190,6 +198,11 @@ std::string CoordSystem::hold(double time_ms) {
   double slope_per_ms = 0;
   if (std::string refusal = slope_of(ElementId::kCoordFeedHoldSlew, slope_per_ms); !refusal.empty()) return refusal;
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
+  if (retracing() && !quick_stopped_) {
+    shaped_by_slew_ = true;
+    begin_shaping(Shaping::kSlower);
+    return {};
+  }
   if (hold == TimeBase::Hold::kHeld || hold == TimeBase::Hold::kSlowing) return {};
   shaping_ = Shaping::kNone;
   shape_at_ms_ = kNever;
@@ -218,24 +231,20 @@ const TimeBase* CoordSystem::clock_for_motion(double time_ms) {
 void CoordSystem::abort(double time_ms) {
   std::vector<double> position(path_map_.motors.size()), velocity(path_map_.motors.size());
   if (on_path_) {
-    pipeline_.sample(std::max(time_base_.path_at(time_ms), sampled_to_ms_), 1.0, 1, position, velocity);
+    pipeline_.sample(path_position(time_ms), 1.0, 1, position, velocity);
     if (!pipeline_.end_sequence()) collect_timings();
   }
   report_unfinished(time_ms, false);
   for (std::size_t i = 0; on_path_ && i < path_map_.motors.size(); ++i) {
     Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
+    if (m.limit_stop != Motor::LimitStop::kNone) velocity[i] = 0;   // held at a software limit
+    if (m.limit_stop != Motor::LimitStop::kNone) position[i] = m.position_mu;
     m.position_mu = position[i];
-    m.velocity_mu_ms = velocity[i] * time_base_.rate_at(time_ms);
+    m.velocity_mu_ms = velocity[i] * path_rate(time_ms);
   }
   on_path_ = false;
-  for (int motor : motors_) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    if (m.coord != number_ || !m.moving()) continue;
-    const auto n = static_cast<unsigned>(motor);
-    const motion::JogParameters stop{0, machine_.elements.get(ElementId::kMotorAbortTa, n),
-                                     machine_.elements.get(ElementId::kMotorAbortTs, n)};
-    m.follow(motion::MotorProfile::stop(time_ms, m.position_at(time_ms), m.velocity_at(time_ms), stop));
-  }
+  for (Motor& m : machine_.motors)
+    if (m.shares_with == number_) abort_motor(machine_, m);
   time_base_.clear_hold(time_ms);
   pointed_label_ = -1;
   drop_program();
@@ -250,12 +259,14 @@ void CoordSystem::drop_program() {
   executed_.clear();
   end_compensation();
   spline_.cancel();
+  forget_retrace();
   pvt_velocity_uu_ms_.fill(0);
   block_ = {};
   home_motors_.clear();
   shaping_ = Shaping::kNone;
   shape_at_ms_ = kNever;
-  pause_requested_ = stepping_ = quick_stopped_ = false;
+  pause_requested_ = pause_at_rest_ = stepping_ = quick_stopped_ = false;
+  limit_fault_.reset();
   rotary_state_ = RotaryState::kNone;
   phase_ = Phase::kIdle;
   resume_ms_ = kNever;

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "kinematics/kinematics.h"
+#include "kinematics/robot.h"
 #include "compiler/bytecode/control.h"
 #include "runtime/coordinate/modal.h"
 #include "runtime/coordinate/time_base.h"
@@ -51,6 +52,12 @@ struct RapidMove {
 /// pmatch, pset (axis and value), pclr, pstore or pload.
 struct PositionChange { bytecode::ControlVerb verb; int axis = 0; double value = 0; };
 
+/// A stock robot that stands in for the kinematic routines: motors ->I, ascending, are its joints.
+struct StockRobot {
+  std::shared_ptr<const kinematics::Robot> robot;
+  std::vector<double> motor_mu_per_joint;  // [joint], or one for all
+};
+
 class CoordSystem {
  public:
   CoordSystem(Machine::State& machine, int number);
@@ -62,6 +69,7 @@ class CoordSystem {
   const kinematics::AxisMap& map() const { return map_; }
   const std::vector<int>& motors() const { return motors_; }
   ProgramHandle forward, inverse;
+  StockRobot robot;            // in place of forward and inverse, where there is one
   int lookahead_buffer = 0;    // segments of define lookahead
   ModalState modal;
   std::vector<double> q;
@@ -84,19 +92,29 @@ class CoordSystem {
   /// Inside lookahead as fast as the motors' limits allow, otherwise a feed hold.
   std::string quick_stop(double time_ms);
   bool quick_stopped() const { return quick_stopped_ || shaping_ == Shaping::kSlower; }
+  /// Runs the stored path backwards, until a quick stop, forward(), or the end of what is stored.
+  std::string retrace(double time_ms);
+  std::string forward_on_path(double time_ms);
+  /// The path behind the place that the program has come to is run through, backwards or forwards.
+  bool retracing() const { return back_ms_ < 0 || back_rate_ != 0 || shaping_ == Shaping::kBack; }
+  bool runs_backwards() const { return back_rate_ < 0; }
   /// rate: 1 is 100 %. It is reached at Coord[].TimeBaseSlew.
   std::string set_time_base(double time_ms, double rate);
   const TimeBase& time_base() const { return time_base_; }
   /// A motor that belongs here gets a profile at time_ms: the clock it runs by.
   const TimeBase* clock_for_motion(double time_ms);
   void abort(double time_ms);
-  /// A run-time error: aborts, sets ErrorStatus and reports.
+  /// A run-time error: aborts, sets ErrorStatus and reports. A software limit ahead inside lookahead: the motion ends on the path at the
+  /// limit, then it is reported, and the program waits to be aborted.
   void fail(double time_ms, Fault fault);
+  void fail_at_once(double time_ms, Fault fault);
   bool program_running() const { return phase_ != Phase::kIdle && phase_ != Phase::kPaused; }
   /// Executing, or waiting to go on.
   bool program_active() const { return phase_ != Phase::kIdle; }
   /// Executing, and going on by itself: not held, not at 0 %.
   bool proceeding(double time_ms) const { return program_running() && (!time_base_.stands(time_ms) || next_event_ms() < kNever); }
+  /// Rate at which the path is run through, below 0 backwards; 1 is 100 %.
+  double path_rate(double time_ms) const { return time_base_.rate_at(time_ms) + back_rate_; }
   bool executes(const bytecode::Program* program) const;
   const Runner& runner() const { return runner_; }
   Runner& runner() { return runner_; }
@@ -126,7 +144,11 @@ class CoordSystem {
   /// Motors that follow the pipeline: row i of position_mu gets count samples from start_ms on.
   bool on_path() const { return on_path_; }
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
+  /// The motors have followed the first kept of `count` samples that sample() gave. rows: [motors of used][kept], from home.
+  void follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu);
   const std::vector<int>& path_motors() const { return path_map_.motors; }
+  /// The line whose move, dwell or wait executes at the present time.
+  bytecode::SourceLine executing_source(double time_ms) const;
   /// Reports the moves that have begun and whose end is still to come: with the end that is planned where they go_on, else with time_ms.
   void report_unfinished(double time_ms, bool go_on);
 
@@ -135,23 +157,32 @@ class CoordSystem {
   std::string match_positions(double time_ms);
   /// pmatch, pset, pclr, pstore, pload while no program runs. Answers a refusal or empty.
   std::string change_positions(double time_ms, const PositionChange& change);
-  bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu);
-  /// Positions of served_motors(), through the inverse routine where there is one.
-  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
+  /// For a query: axes of which the forward routine answers nan are nan. Where it has no solution all its axes are, and why says it.
+  bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu, std::string* why = nullptr);
+  /// Positions of served_motors(), through the inverse routine where there is one. rates: with the axes' velocities for the motors'
+  /// (KinVelEna), for pvt moves without segmentation.
+  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source,
+                                        const motion::RoutineRates* rates = nullptr);
+  /// There is a forward routine, or a robot.
+  bool has_forward() const { return forward || robot.robot; }
   std::vector<int> served_motors() { return motor_map().motors; }
   std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
   /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
   const AxisVector& calculated_position() const { return program_uu_; }
   AxisVector commanded_position(double time_ms);
-  /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
+  /// Where the motors are, and how far from where they are commanded to be.
+  AxisVector actual_position(double time_ms);
+  AxisVector following_error_uu(double time_ms);
+  /// In axis units per ms, from the motors' velocities; through a forward routine that sets no KinVelAxis as a difference over one
+  /// servo cycle.
   AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
   const motion::StageObservers& observers() const { return observers_; }
 
  private:
-  enum class Shaping { kNone, kSlower, kFaster };
+  enum class Shaping { kNone, kSlower, kFaster, kBack };
   enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd };
+  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd, kLimit };
 
   // control.cpp
   std::string start(double time_ms);
@@ -173,8 +204,17 @@ class CoordSystem {
   void begin_shaping(Shaping shaping);
   bool keeps_limits(double path_ms, double step_ms);
   double step_toward(double path_ms, double last_ms, double wanted_ms);
+  double step_by_slew(double last_ms, double wanted_ms) const;
   void shape_rate(double time_ms);
+  void run_step(double time_ms, double step_ms);
   void end_shaping(double time_ms);
+  double wanted_step_ms(double path_ms) const;
+
+  // retrace.cpp
+  double path_position(double time_ms) const;
+  void forget_retrace();
+  double history_wanted_ms() const;
+  double stored_ms() const;
 
   // program.cpp
   void calculate(double time_ms);
@@ -201,6 +241,8 @@ class CoordSystem {
   std::optional<Fault> add_spline_moves();
   std::optional<Fault> finish_spline();
   std::optional<Fault> pvt_has_ended(bytecode::SourceLine source) const;
+  bool pvt_goes_on() const;
+  bool pauses_here() const { return (pause_at_rest_ || (stepping_ && !step_block_)) && !pvt_goes_on(); }
   std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
   Flow start_blendable(Thread& thread, motion::MotionCommand command);
   Flow stop_item(Thread& thread, AfterRest then);
@@ -213,6 +255,7 @@ class CoordSystem {
   std::optional<Fault> rapid_parameters(double time_ms, const RapidMove& move, const motion::MotorMap& map, std::span<const double> target_mu,
                                         std::vector<motion::JogParameters>& parameters) const;
   void report_rapid(double time_ms);
+  std::vector<motion::GoverningShare> rapid_governed() const;
   void start_homing(double time_ms);
   void motors_arrived(double time_ms);
   void collect_timings();
@@ -227,9 +270,31 @@ class CoordSystem {
   std::optional<Fault> select_transform(double number, bytecode::SourceLine source);
   std::string rename_position();
 
+  // position_limits.cpp
+  bool has_position_limits() const;
+  std::optional<Fault> check_targets(const AxisVector& target_uu, bytecode::SourceLine source);
+  std::optional<Fault> limit_target(int motor, double& target_mu, bytecode::SourceLine source) const;
+  void stop_at_limit(double time_ms, Fault fault);
+  void stopped_at_limit(double time_ms);
+  void hold_at_limits(std::span<double> position_mu) const;
+
   // positions.cpp
-  std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
-  std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu);
+  AxisVector axes_at(double time_ms, bool actual);
+  std::string why_no_kinematics() const;
+  std::optional<AxisVector> routine_velocity_uu_ms(double time_ms);
+
+  // kinematic_routines.cpp
+  enum class Caller { kProgram, kQuery };
+  std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source,
+                                     const motion::RoutineRates* rates, std::span<double> rate_mu);
+  std::string inverse_routine(const AxisVector& axis_uu, std::span<double> motor_mu, const AxisVector* rate_uu, std::span<double> rate_mu);
+  std::string robot_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, const AxisVector* rate_uu, std::span<double> rate_mu);
+  std::string solve_forward(std::span<const double> motor_mu, AxisVector& axis_uu, Caller caller);
+  std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu, Caller caller);
+  std::string robot_forward(std::span<const double> motor_mu, AxisVector& axis_uu, Caller caller);
+  bool forward_rates(std::span<const double> motor_mu, std::span<const double> motor_mu_ms, AxisVector& velocity_uu_ms);
+  std::string run_routine(Caller caller);
+  std::string robot_does_not_fit() const;
 
   Machine::State& machine_;
   int number_;
@@ -237,6 +302,7 @@ class CoordSystem {
   kinematics::AxisMap map_;
   std::vector<int> motors_;
   std::uint32_t forward_axes_ = 0;
+  std::vector<double> near_joint_;        // of robot: the last ones on the path, which say its branch
   Runner runner_, kinematics_;
   ProgramHandle pointed_;
   std::int64_t pointed_label_ = -1;
@@ -249,20 +315,26 @@ class CoordSystem {
   AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
   bool stop_requested_ = false, pause_requested_ = false;
+  std::optional<Fault> limit_fault_;  // stopped, or stopping, on the path at a software limit: only abort ends it
   bool stepping_ = false;           // pauses after one item
   bool step_block_ = false;         // between bstart and bstop
+  bool pause_at_rest_ = false;      // pauses after the next pvt move that ends at rest
   std::vector<double> paused_mu_;   // [motors_]
   TimeBase time_base_;
   Shaping shaping_ = Shaping::kNone;      // quick stop, or going on after it
   bool quick_stopped_ = false;
   double shape_at_ms_ = kNever;           // next servo tick of it
+  double before_path_ms_ = 0;             // path position at the last shaped tick
   std::vector<double> before_mu_, here_mu_, there_mu_;   // [path motor] at the tick before, at this one, at one that is tried
+  bool shaped_by_slew_ = false;           // feed hold while retracing, and retracing without lookahead
+  double back_ms_ = 0, back_from_ms_ = 0, back_rate_ = 0;  // path position less the clock's, at a time; its rate
+  double retrace_to_ms_ = 0;              // path position at which retracing begins to stop
 
   motion::Pipeline pipeline_;
   motion::MotorMap path_map_;
   motion::StageObservers observers_;
   bool on_path_ = false, lookahead_ = false;
-  double sampled_to_ms_ = 0, sequence_start_ms_ = 0;
+  double sequence_start_ms_ = 0;
   double calculated_at_ms_ = -kNever;  // last calculation pass
   int moves_without_time_ = 0;
   ProgramFrame frame_;

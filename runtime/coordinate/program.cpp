@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motion/governing.h"
 #include "runtime/motor_moves.h"
+#include "runtime/servo/servo_cycle.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -31,8 +33,9 @@ void CoordSystem::ensure_sequence(double time_ms) {
   pipeline_.reset(set_up, calculated_uu_, path_ms);
   on_path_ = true;
   before_mu_.clear();
-  sampled_to_ms_ = sequence_start_ms_ = path_ms;
-  for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].source = Motor::Source::kPath;
+  forget_retrace();
+  sequence_start_ms_ = path_ms;
+  for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].follow_path();
 }
 
 motion::PipelineConfig CoordSystem::config() {
@@ -43,6 +46,8 @@ motion::PipelineConfig CoordSystem::config() {
   c.servo_period_ms = machine_.period_ms();
   c.fine = machine_.options.fine;
   c.ramp_rule = machine_.options.ramp_rule;
+  c.limit_jerk = machine_.options.limit_jerk;
+  c.note_governing = machine_.options.note_governing;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
   c.lookahead = c.segment_time_ms > 0 && c.lookahead_segments > 1 && lookahead_buffer > 0;
   c.radius_error_limit_uu = e.get(ElementId::kCoordRadiusErrorLimit, cs);
@@ -52,11 +57,14 @@ motion::PipelineConfig CoordSystem::config() {
   c.corner_blend_bp = e.get(ElementId::kCoordCornerBlendBp, cs);
   c.corner_dwell_bp = e.get(ElementId::kCoordCornerDwellBp, cs);
   c.added_dwell_ms = e.get(ElementId::kCoordAddedDwellTime, cs);
+  c.history_ms = c.segment_time_ms > 0 ? history_wanted_ms() : 0;
   c.map = motor_map();
   for (int motor : c.map.motors) {
     const auto n = static_cast<unsigned>(motor);
-    c.limits.push_back({e.get(ElementId::kMotorMaxSpeed, n), e.get(ElementId::kMotorInvAmax, n),
-                        e.get(ElementId::kMotorInvDmax, n), e.get(ElementId::kMotorInvJmax, n)});
+    const bool held = e.get(ElementId::kCoordSoftLimitStopDis, cs) != 0;
+    const PositionRange range = held ? PositionRange{} : software_limits(e, motor);
+    c.limits.push_back({e.get(ElementId::kMotorMaxSpeed, n), e.get(ElementId::kMotorInvAmax, n), e.get(ElementId::kMotorInvDmax, n),
+                        e.get(ElementId::kMotorInvJmax, n), range.min_mu, range.max_mu});
     c.jerk_limit_unsegmented = c.jerk_limit_unsegmented || e.assigned(ElementId::kMotorInvJmax, n);
   }
   return c;
@@ -96,7 +104,7 @@ double CoordSystem::motors_end_ms() const {
   double end_ms = phase_ == Phase::kIdle || phase_ == Phase::kPaused ? 0 : resume_ms_;
   for (int motor : phase_ == Phase::kHoming ? home_motors_ : motors_) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    const bool counts = phase_ == Phase::kHoming || m.coord == number_;
+    const bool counts = phase_ == Phase::kHoming || (m.coord == number_ && m.has_axis());
     if (counts && m.source == Motor::Source::kProfile) end_ms = std::max(end_ms, m.seeks_trigger() ? kNever : m.profile_end_ms());
   }
   return end_ms;
@@ -217,6 +225,7 @@ void CoordSystem::at_rest(double time_ms) {
       go_on(time_ms);
       break;
     case AfterRest::kPause: pause_here(time_ms); break;
+    case AfterRest::kLimit: stopped_at_limit(time_ms); break;
     case AfterRest::kDwell: start_dwell(time_ms); break;
     case AfterRest::kRapid: start_rapid(time_ms); break;
     case AfterRest::kNextInterrupt:
@@ -235,7 +244,8 @@ void CoordSystem::settle_path(double time_ms) {
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
   pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
-  if (!map_.has_inverse_motors()) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
+  if (!map_.has_inverse_motors() && !limit_fault_) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
+  hold_at_limits(position);
   for (std::size_t i = 0; i < position.size(); ++i)
     machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].rest(time_base_.time_at(pipeline_.end_ms()), position[i]);
   on_path_ = false;
@@ -279,14 +289,27 @@ void CoordSystem::start_rapid(double time_ms) {
 void CoordSystem::sample(double start_ms, double period_ms, int count, std::span<double> position_mu) {
   if (time_base_.is_real_time()) pipeline_.sample(start_ms, period_ms, count, position_mu, {});
   else sample_by_clock(start_ms, period_ms, count, position_mu);
-  sampled_to_ms_ = time_base_.path_at(start_ms + (count - 1) * period_ms);
-  for (std::size_t i = 0; i < path_map_.motors.size(); ++i) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
-    const std::size_t last = (i + 1) * static_cast<std::size_t>(count) - 1;
-    const double before_mu = count > 1 ? position_mu[last - 1] : m.position_mu;
-    m.velocity_mu_ms = (position_mu[last] - before_mu) / period_ms;  // as the controller's DesVel: over the last servo cycle
-    m.position_mu = position_mu[last];
+}
+
+void CoordSystem::follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu) {
+  for (int motor : path_map_.motors) {
+    Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    const auto row = static_cast<std::size_t>(std::find(used.begin(), used.end(), motor) - used.begin());
+    const std::size_t last = (row + 1) * static_cast<std::size_t>(kept) - 1;
+    const double before_mu = kept > 1 ? rows_mu[last - 1] : m.position_mu;
+    m.velocity_mu_ms = (rows_mu[last] - before_mu) / period_ms;  // as the controller's DesVel: over the last servo cycle
+    m.position_mu = rows_mu[last];
   }
+  if (kept == count) return;
+  sample_run_.resize(path_map_.motors.size());
+  pipeline_.sample(path_position(start_ms + (kept - 1) * period_ms), 1.0, 1, sample_run_, {});  // the pipeline stands there again
+}
+
+bytecode::SourceLine CoordSystem::executing_source(double time_ms) const {
+  const bytecode::SourceLine on_path = on_path_ ? pipeline_.executing_source(path_position(time_ms)) : bytecode::SourceLine{};
+  if (on_path.line > 0) return on_path;
+  if (phase_ == Phase::kRapid) return rapid_.source;
+  return phase_ == Phase::kDwelling || phase_ == Phase::kHoming ? item_source_ : runner_.thread.source();
 }
 
 /// In runs of ticks over which the clock's rate is steady, single ticks while it changes.
@@ -294,11 +317,11 @@ void CoordSystem::sample_by_clock(double start_ms, double period_ms, int count, 
   const std::size_t motors = path_map_.motors.size();
   for (int done = 0; done < count;) {
     const double first_ms = start_ms + done * period_ms;
-    const double steady_ms = time_base_.steady_until_ms(first_ms);
+    const double steady_ms = retracing() ? first_ms : time_base_.steady_until_ms(first_ms);
     int n = 1;
     while (done + n < count && first_ms + n * period_ms <= steady_ms) ++n;
     sample_run_.resize(motors * static_cast<std::size_t>(n));
-    pipeline_.sample(time_base_.path_at(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
+    pipeline_.sample(path_position(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
     for (std::size_t m = 0; m < motors; ++m)
       std::copy_n(sample_run_.begin() + static_cast<std::ptrdiff_t>(m) * n, n,
                   position_mu.begin() + static_cast<std::ptrdiff_t>(m) * count + done);
@@ -333,21 +356,24 @@ void CoordSystem::record_executed(double time_ms) {
     const auto& [timing, mode, source] = executed_.front();
     const double end_ms = time_base_.time_at(timing.end_ms);
     if (end_ms > time_ms) return;
-    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu});
+    record({mode, source, number_, -1, time_base_.time_at(timing.start_ms), end_ms, timing.length_uu, motion::time_rule_name(timing.rule),
+            timing.governed});
   }
 }
 
 void CoordSystem::report_unfinished(double time_ms, bool go_on) {
   record_executed(time_ms);
-  const auto report = [&](std::string_view mode, bytecode::SourceLine source, double start_ms, double end_ms, double length) {
-    const bool known = go_on && end_ms < kNever;
-    if (start_ms < time_ms || known) record({mode, source, number_, -1, start_ms, known ? end_ms : time_ms, length});
+  const auto report = [&](MoveRecord move) {
+    const bool known = go_on && move.end_ms < kNever;
+    if (!known) move.end_ms = time_ms;
+    if (move.start_ms < time_ms || known) record(move);
   };
   for (; !executed_.empty(); executed_.pop_front()) {
     const auto& [timing, mode, source] = executed_.front();
-    report(mode, source, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu);
+    report({mode, source, number_, -1, time_base_.time_at(timing.start_ms), time_base_.time_at(timing.end_ms), timing.length_uu,
+            motion::time_rule_name(timing.rule), timing.governed});
   }
-  if (rapid_open_) report("rapid", rapid_.source, rapid_start_ms_, motors_end_ms(), rapid_length_uu_);
+  if (rapid_open_) report({"rapid", rapid_.source, number_, -1, rapid_start_ms_, motors_end_ms(), rapid_length_uu_});
   rapid_open_ = false;
 }
 

@@ -17,19 +17,21 @@ namespace {
 using bytecode::ElementId;
 
 constexpr int kBisections = 40;
+constexpr double kNoTime_ms = 1e-12;
 
 }  // namespace
 
 std::string CoordSystem::quick_stop(double time_ms) {
-  if (!on_path_ || !lookahead_) return hold(time_ms);
-  if (shaping_ == Shaping::kNone || shaping_ == Shaping::kFaster) begin_shaping(Shaping::kSlower);
+  if (!on_path_ || (!lookahead_ && !retracing())) return hold(time_ms);
+  shaped_by_slew_ = !lookahead_;
+  if (shaping_ != Shaping::kSlower && !quick_stopped_) begin_shaping(Shaping::kSlower);
   return {};
 }
 
 void CoordSystem::begin_shaping(Shaping shaping) {
   if (shaping_ == Shaping::kNone) before_mu_.clear();
   shaping_ = shaping;
-  time_base_.shape(shaping == Shaping::kSlower ? TimeBase::Hold::kSlowing : TimeBase::Hold::kResuming);
+  time_base_.shape(shaping == Shaping::kFaster && back_ms_ == 0 ? TimeBase::Hold::kResuming : TimeBase::Hold::kSlowing);
   shape_at_ms_ = machine_.tick_ms(machine_.tick + 1);
 }
 
@@ -55,27 +57,56 @@ double CoordSystem::step_toward(double path_ms, double last_ms, double wanted_ms
   return allowed;
 }
 
+/// The same where the rate changes by Coord[].FeedHoldSlew.
+double CoordSystem::step_by_slew(double last_ms, double wanted_ms) const {
+  const double change_ms = machine_.elements.get(ElementId::kCoordFeedHoldSlew, static_cast<unsigned>(number_));
+  return std::clamp(wanted_ms, last_ms - change_ms, last_ms + change_ms);
+}
+
+double CoordSystem::wanted_step_ms(double path_ms) const {
+  const double full_ms = machine_.period_ms() * std::min(1.0, time_base_.override_rate());
+  if (shaping_ == Shaping::kFaster) return full_ms;
+  if (shaping_ == Shaping::kSlower) return 0;
+  return std::max(-full_ms, pipeline_.oldest_ms() - path_ms);
+}
+
 void CoordSystem::shape_rate(double time_ms) {
-  const double h = machine_.period_ms(), path_ms = time_base_.path_at(time_ms);
-  const double last_ms = path_ms - time_base_.path_at(time_ms - h);
-  const double wanted_ms = shaping_ == Shaping::kSlower ? 0 : h * std::min(1.0, time_base_.override_rate());
+  const double h = machine_.period_ms(), path_ms = path_position(time_ms);
+  if (shaping_ == Shaping::kBack && path_ms < retrace_to_ms_) shaping_ = Shaping::kSlower;
+  const double wanted_ms = wanted_step_ms(path_ms);
   double step_ms = wanted_ms;
   if (on_path_) {
     here_mu_.resize(path_map_.motors.size());
     there_mu_.resize(path_map_.motors.size());
     pipeline_.peek(path_ms, here_mu_);
     const bool known = before_mu_.size() == here_mu_.size();
-    step_ms = known ? step_toward(path_ms, last_ms, wanted_ms) : last_ms;
+    const double last_ms = path_ms - (known ? before_path_ms_ : path_position(time_ms - h));
+    if (shaped_by_slew_) step_ms = step_by_slew(last_ms, wanted_ms);
+    else step_ms = known ? step_toward(path_ms, last_ms, wanted_ms) : last_ms;
+    step_ms = std::max(step_ms, pipeline_.oldest_ms() - path_ms);
     before_mu_ = here_mu_;
+    before_path_ms_ = path_ms;
   }
-  time_base_.force_rate(time_ms, step_ms / h);
-  if (step_ms == wanted_ms) end_shaping(time_ms);
-  else shape_at_ms_ = machine_.tick_ms(machine_.tick + 1);
+  run_step(time_ms, step_ms);
+  const bool stands = shaping_ == Shaping::kSlower || (shaping_ == Shaping::kBack && path_ms <= pipeline_.oldest_ms());
+  const bool goes_on = shaping_ == Shaping::kFaster && back_ms_ == 0;
+  if (step_ms == wanted_ms && (stands || goes_on)) end_shaping(time_ms);
+  else shape_at_ms_ = wanted_ms == 0 && step_ms == 0 ? kNever : machine_.tick_ms(machine_.tick + 1);   // at 0 %: until that changes
   clock_changed(time_ms);
 }
 
+/// The path position goes on by step_ms until the next tick: behind the clock by retracing, at the clock's by its rate.
+void CoordSystem::run_step(double time_ms, double step_ms) {
+  const double h = machine_.period_ms(), behind_ms = path_position(time_ms) - time_base_.path_at(time_ms);
+  back_ms_ = behind_ms > -kNoTime_ms ? 0 : behind_ms;
+  back_from_ms_ = time_ms;
+  const double ahead_ms = std::max(0.0, back_ms_ + step_ms);   // past the place that the clock stands at
+  time_base_.force_rate(time_ms, ahead_ms / h);
+  back_rate_ = (step_ms - ahead_ms) / h;
+}
+
 void CoordSystem::end_shaping(double time_ms) {
-  const bool stopped = shaping_ == Shaping::kSlower;
+  const bool stopped = shaping_ != Shaping::kFaster;
   shaping_ = Shaping::kNone;
   shape_at_ms_ = kNever;
   time_base_.shape_end(stopped);

@@ -68,6 +68,9 @@ std::optional<Fault> CoordSystem::move_rapid(double time_ms, const RapidMove& mo
     return Fault{FaultKind::kMoveType, move.source, "a move until a trigger (^) cannot go through kinematics"};
   std::vector<double> target(map.motors.size());
   if (auto fault = motors_from_axes(move.target_uu, target.data(), move.source)) return fault;
+  const std::vector<double> wanted = target;
+  for (std::size_t i = 0; i < target.size(); ++i)
+    if (auto fault = limit_target(map.motors[i], target[i], move.source)) return fault;
   std::vector<motion::JogParameters> parameters;
   if (auto fault = rapid_parameters(time_ms, move, map, target, parameters)) return fault;
   const TimeBase* clock = clock_for_motion(time_ms);
@@ -78,6 +81,7 @@ std::optional<Fault> CoordSystem::move_rapid(double time_ms, const RapidMove& mo
     if (from == target[i] && !m.moving() && !trigger) continue;
     m.follow(motion::MotorProfile::move(clock->path_at(time_ms), from, m.velocity_by(clock, time_ms), target[i], parameters[i],
                                         m.accel_by(clock, time_ms)), clock);
+    note_clip(m, target[i], wanted[i]);
     if (trigger) seek_trigger(machine_, m, *trigger, parameters[i]);
   }
   double length2 = 0;
@@ -91,8 +95,18 @@ std::optional<Fault> CoordSystem::move_rapid(double time_ms, const RapidMove& mo
   return std::nullopt;
 }
 
+/// The motor that arrives last decides.
+std::vector<motion::GoverningShare> CoordSystem::rapid_governed() const {
+  const Motor* last = nullptr;
+  for (int motor : motors_) {
+    const Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
+    if (m.coord == number_ && (!last || m.profile.end_ms() > last->profile.end_ms())) last = &m;
+  }
+  return last ? governed_by_itself(machine_, *last) : std::vector<motion::GoverningShare>{};
+}
+
 void CoordSystem::report_rapid(double time_ms) {
-  if (rapid_open_) record({"rapid", rapid_.source, number_, -1, rapid_start_ms_, time_ms, rapid_length_uu_});
+  if (rapid_open_) record({"rapid", rapid_.source, number_, -1, rapid_start_ms_, time_ms, rapid_length_uu_, {}, rapid_governed()});
   rapid_open_ = false;
 }
 

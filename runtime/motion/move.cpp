@@ -83,6 +83,20 @@ double programmed_time_ms(const MotionCommand& command, const Arc& arc, double l
   return time_ms;
 }
 
+/// What made programmed_time_ms() what it is.
+TimeRule rule_of(const MotionCommand& command, const Arc& arc, double length_uu, double time_ms, const PipelineConfig& config) {
+  if (command.kind == CommandKind::kDelay) return time_ms > command.move_time_ms ? TimeRule::kSegment : TimeRule::kOwnTime;
+  if (command.feed_uu == 0) return TimeRule::kMoveTime;
+  if (command.inverse_time) return TimeRule::kInverseTime;
+  const double feed = feed_in_effect(command, arc, length_uu, config);
+  const double second_uu = norm(arc.curve.delta, command.feed_axes2 & ~circle_axes_of(arc.curve) & arc.curve.moved);
+  const bool by_feed = time_ms <= std::max(length_uu, second_uu) / feed * command.feed_time_ms;
+  if (!by_feed) return command.alt_feed_uu > 0 ? TimeRule::kAltFeedRate : TimeRule::kFeed;
+  if (second_uu > length_uu) return TimeRule::kSecondFeedAxes;
+  if (feed >= command.feed_uu) return TimeRule::kFeed;
+  return config.max_feed_uu > 0 && feed == config.max_feed_uu ? TimeRule::kMaxFeedRate : TimeRule::kMaxCirAccel;
+}
+
 /// Shortest time at which no motor is above its MaxSpeed, unsegmented.
 double time_for_max_speed_ms(const Move& move, const PipelineConfig& config) {
   double time_ms = 0;
@@ -156,16 +170,17 @@ void take_words(Move& move, const MotionCommand& command) {
   move.second_set = command.second_set;
 }
 
-/// Unsegmented: the motors' own cubics, which the linear map makes of those of the axes.
-std::optional<Fault> map_rates(Curve& curve, SourceLine source, const MoveContext& context) {
+/// Unsegmented: the motors' own cubics, with the velocities that the linear map or the kinematic routine makes of those of the axes.
+std::optional<Fault> map_rates(Curve& curve, const MotionCommand& command, const MoveContext& context) {
   if (context.config.segment_time_ms > 0) return std::nullopt;
-  if (!context.kinematics.is_linear())
-    return Fault{FaultKind::kNotSimulated, source, "pvt and spline moves through inverse kinematics need segmentation; set Coord[].SegMoveTime"};
-  curve.motor_start_rate_mu.resize(context.kinematics.count());
-  curve.motor_end_rate_mu.resize(context.kinematics.count());
-  context.kinematics.rate(curve.rates->start, curve.motor_start_rate_mu.data());
-  context.kinematics.rate(curve.rates->end, curve.motor_end_rate_mu.data());
-  return std::nullopt;
+  const auto map = [&](const AxisVector& at, const AxisVector& velocity_uu_ms, std::vector<double>& rate_mu) {
+    rate_mu.resize(context.kinematics.count());
+    auto fault = context.kinematics.rate_at(at, velocity_uu_ms, rate_mu.data(), command.source);
+    for (double& rate : rate_mu) rate *= command.move_time_ms;
+    return fault;
+  };
+  if (auto fault = map(curve.start, command.start_velocity_uu_ms, curve.motor_start_rate_mu)) return fault;
+  return map(curve.end, command.end_velocity_uu_ms, curve.motor_end_rate_mu);
 }
 
 Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
@@ -179,12 +194,13 @@ Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start
   }
   Curve curve = pvt_curve(start, end_point(command, start), rates);
   if (auto fault = map_ends(curve, start_motor_mu, command.source, context)) return *fault;
-  if (auto fault = map_rates(curve, command.source, context)) return *fault;
+  if (auto fault = map_rates(curve, command, context)) return *fault;
   Move move;
   take_words(move, command);
   move.entry = move.exit = {0, 0};
   move.no_blend = false;
   move.pvt = true;
+  move.rule = TimeRule::kOwnTime;
   move.time_ms = time_ms;
   move.length_uu = norm(curve.delta, command.feed_axes & curve.moved);
   move.curve = std::make_shared<const Curve>(std::move(curve));
@@ -205,7 +221,9 @@ Ramp ramp_within_limits(const RampSetting& setting, double speed_change_uu_ms, c
   return ramp;
 }
 
-Ramp start_ramp(const Move& move, const PipelineConfig& config) { return own_ramp(move, move.time_ms, false, config); }
+Ramp start_ramp(const Move& move, const PipelineConfig& config) {
+  return move.pvt ? Ramp{} : own_ramp(move, move.time_ms, false, config);
+}
 
 AxisVector end_velocity(const Move& move, double u) {
   AxisVector velocity = derivative(*move.curve, u);
@@ -226,9 +244,13 @@ Result<Move> make_move(const MotionCommand& command, const AxisVector& start, co
   move.curve = std::make_shared<const Curve>(arc.curve);
   move.length_uu = command.kind == CommandKind::kDelay ? 0 : feed_length(arc, command);
   const double programmed_ms = programmed_time_ms(command, arc, move.length_uu, context.config);
+  move.rule = rule_of(command, arc, move.length_uu, programmed_ms, context.config);
   if (move.length_uu == 0) move.length_uu = longest(arc.curve, ~0u);
   move.time_ms = std::max(programmed_ms, time_for_max_speed_ms(move, context.config));
+  if (move.time_ms > programmed_ms) move.rule = TimeRule::kMotorSpeed;
+  const double without_ramps_ms = move.time_ms;
   move.time_ms = time_with_room_for_ramps(move, move.time_ms, context.config);
+  if (move.time_ms > without_ramps_ms) move.rule = TimeRule::kRamps;
   if (auto fault = too_long(move, command.source, context.config)) return *fault;
   if (move.time_ms == 0 && move.curve->moved != 0)
     return Fault{FaultKind::kBadTarget, command.source, "the move takes no time; set tm, ta or a feed rate"};

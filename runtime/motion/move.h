@@ -17,6 +17,7 @@ struct Move {
   std::shared_ptr<const Curve> curve;
   double time_ms = 0;                   // TM: at constant speed, after all rules
   double length_uu = 0;                 // over the axes that counted for the feed rate
+  TimeRule rule = TimeRule::kFeed;      // what time_ms comes from
   RampSetting entry{}, exit{};          // ta ts, td tsd as set
   Ramp stop_ramp;                       // to rest at the end of this move
   bool no_blend = false;

@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "runtime/motion/governing.h"
+#include "runtime/motion/jerk_lookahead.h"
 #include "runtime/motion/lookahead.h"
 #include "runtime/motion/planner.h"
+#include "runtime/motion/position_limits.h"
 #include "runtime/motion/segmenter.h"
 #include "runtime/motion/timeline.h"
 #include "runtime/motion/timings.h"
@@ -13,6 +18,8 @@ namespace pmac::motion {
 namespace {
 
 using runtime::Fault;
+
+constexpr double kShortestSegment_ms = 1e-6;
 
 /// Unsegmented pvt: the cubic in u of each motor, u = u0 + rate * time.
 Segment pvt_segment(const PathPiece& piece) {
@@ -57,9 +64,10 @@ struct Pipeline::State {
   MotorKinematics kinematics;
   Planner planner;
   std::optional<Segmenter> segmenter;   // segmented only
-  std::optional<Lookahead> lookahead;
+  std::unique_ptr<TimeLaw> lookahead;   // where it is on
   Timeline timeline;
   Timings timings;
+  Governing governing;                  // where note_governing asks for it
   StageObservers observers;
   std::optional<Fault> fault;           // of a later stage: nothing more is produced until reset()
   double earliest_ms = 0;               // start of the next sequence
@@ -78,6 +86,7 @@ struct Pipeline::State {
   void to_times(bool ends);
   void deliver();
   Fault stop_at(Fault reason);
+  std::optional<Fault> end_at_limit();
 };
 
 void Pipeline::State::build_stages() {
@@ -87,7 +96,8 @@ void Pipeline::State::build_stages() {
   if (segmented()) segmenter.emplace(config, kinematics);
   if (segmented() && config.lookahead) {
     const double window_ms = config.lookahead_segments * config.segment_time_ms;
-    lookahead.emplace(config.limits, window_ms, config.servo_period_ms);
+    if (config.limit_jerk) lookahead = std::make_unique<JerkLookahead>(config.limits, window_ms, config.servo_period_ms);
+    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms);
   }
 }
 
@@ -114,6 +124,7 @@ std::optional<Fault> Pipeline::State::run_stages(bool ends) {
   if (observers.path) std::for_each(planned.pieces.begin(), planned.pieces.end(), observers.path);
   auto problem = to_segments(ends);
   if (problem) fault = stop_at(*problem);
+  if (auto limit = end_at_limit()) problem = fault = std::move(limit);
   planned.begins.clear();
   planned.ends.clear();
   planned.pieces.clear();
@@ -139,6 +150,25 @@ Fault Pipeline::State::stop_at(Fault reason) {
   return reason;
 }
 
+/// With lookahead the path ends where a motor meets its software limit; what lies behind is forgotten.
+std::optional<Fault> Pipeline::State::end_at_limit() {
+  for (std::size_t i = 0; lookahead && i < segments.size(); ++i) {
+    const auto crossing = first_crossing(segments[i], config.limits);
+    if (!crossing) continue;
+    const SourceLine source = segments[i].source;
+    segments[i].duration_ms = crossing->at_ms;
+    segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(crossing->at_ms > kShortestSegment_ms ? i + 1 : i), segments.end());
+    std::vector<Segment> behind;
+    segmenter->abandon(behind);
+    in_sequence = false;
+    const auto m = static_cast<std::size_t>(crossing->motor);
+    const double limit_mu = crossing->plus ? config.limits[m].max_position_mu : config.limits[m].min_position_mu;
+    return Fault{runtime::FaultKind::kSoftLimit, source,
+                 fmt::format("motor {} stops on the path at Motor[{}].{} = {}", config.map.motors[m], config.map.motors[m], crossing->plus ? "MaxPos" : "MinPos", limit_mu)};
+  }
+  return std::nullopt;
+}
+
 void Pipeline::State::to_times(bool ends) {
   if (observers.segment) std::for_each(segments.begin(), segments.end(), observers.segment);
   for (Segment& segment : segments) {
@@ -157,6 +187,7 @@ void Pipeline::State::deliver() {
   for (TimedSegment& segment : timed) {
     if (lookahead) segment.start_ms = std::max(timeline.end_ms(), sequence_ms);
     if (observers.timed_segment) observers.timed_segment(segment);
+    if (config.note_governing) governing.cover(segment);
     timings.cover(segment);
     timeline.push(std::move(segment));
   }
@@ -175,6 +206,9 @@ void Pipeline::reset(const PipelineConfig& config, const AxisVector& start_uu, d
   state_->config = config;
   state_->build_stages();
   state_->timings.reset(state_->segmented());
+  state_->timeline.keep_history(config.history_ms);
+  const bool limits_act = !state_->segmented() || state_->lookahead;
+  if (config.note_governing) state_->governing.reset(limits_act ? config.limits : std::vector<MotorLimits>{}, config.map.motors);
   state_->timeline.reset(std::vector<double>(state_->kinematics.count()), start_time_ms);
   state_->earliest_ms = start_time_ms;
   state_->fault = state_->start_at(start_uu, {});
@@ -238,11 +272,24 @@ void Pipeline::sample(double start_ms, double period_ms, int count, std::span<do
 
 void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
 
+double Pipeline::oldest_ms() const { return state_->timeline.oldest_ms(); }
+
+double Pipeline::history_start_ms(double time_ms, double amount_ms) const { return state_->timeline.history_start_ms(time_ms, amount_ms); }
+
 SourceLine Pipeline::executing_source(double time_ms) const { return state_->timeline.source_at(time_ms); }
 
 const AxisVector& Pipeline::calculated_position() const { return state_->planner.position(); }
 
-void Pipeline::take_timings(std::vector<MoveTiming>& out) { state_->timings.take(out); }
+void Pipeline::take_timings(std::vector<MoveTiming>& out) {
+  const std::size_t first = out.size();
+  state_->timings.take(out);
+  if (!state_->config.note_governing) return;
+  for (std::size_t i = first; i < out.size(); ++i) {
+    const bool has_own_time = out[i].rule == TimeRule::kOwnTime && !state_->lookahead;  // pvt: no limit acts
+    out[i].governed = state_->governing.take(out[i].id);
+    if (has_own_time) out[i].governed.clear();
+  }
+}
 void Pipeline::take_sync_times(std::vector<SyncTime>& out) { state_->timings.take_sync_times(out); }
 
 }  // namespace pmac::motion

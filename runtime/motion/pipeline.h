@@ -71,12 +71,17 @@ class Pipeline {
   /// End of the motion that has been ended; the time at which the motors come to rest. Valid after end_sequence().
   double end_ms() const;
 
-  /// Motor positions at times start_ms + k * period_ms, k = 0 .. count-1, all <= horizon_ms(), ascending from call to call.
+  /// Motor positions at times start_ms + k * period_ms, k = 0 .. count-1, all from oldest_ms() to horizon_ms().
   /// position_mu: [motor][count], motor order of the map. velocity_mu_ms: same shape, or empty. Does not allocate.
   void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
 
-  /// The same at one time from the last sample up to horizon_ms(), out of the way of sample().
+  /// The same at one time, out of the way of sample().
   void peek(double time_ms, std::span<double> position_mu) const;
+
+  /// Positions are known from here on: the last sample, or what the history of the set-up adds to it.
+  double oldest_ms() const;
+  /// From here amount_ms of programmed time lead to time_ms; oldest_ms() where less is known.
+  double history_start_ms(double time_ms, double amount_ms) const;
 
   /// Source line of the command that executes at time_ms (as last sampled); SourceLine{} at rest.
   SourceLine executing_source(double time_ms) const;

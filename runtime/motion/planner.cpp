@@ -80,7 +80,7 @@ void Planner::add(Move move, const PipelineConfig& config, PlannerOutput& out) {
   }
   const double boundary_ms = nominal_end_ms();
   out.ends.push_back({pending_->id, boundary_ms});
-  out.begins.push_back({move.id, move.source, boundary_ms - join.ramp.total_ms() / 2, boundary_ms, move.length_uu});
+  out.begins.push_back({move.id, move.source, boundary_ms - join.ramp.total_ms() / 2, boundary_ms, move.length_uu, move.rule});
   blend(join, move, out);
   nominal_start_ms_ = boundary_ms;
   entry_total_ms_ = join.ramp.total_ms();
@@ -94,14 +94,14 @@ void Planner::end_sequence(PlannerOutput& out) {
 /// A move without length and time leaves no trace but its timing.
 void Planner::pass_over(const Move& move, PlannerOutput& out) {
   const double time_ms = pending_ ? nominal_end_ms() : clock_ms_;
-  out.begins.push_back({move.id, move.source, time_ms, time_ms, 0});
+  out.begins.push_back({move.id, move.source, time_ms, time_ms, 0, move.rule});
   out.ends.push_back({move.id, time_ms});
 }
 
 void Planner::begin(Move move, const PipelineConfig& config, PlannerOutput& out) {
   const Ramp ramp = start_ramp(move, config);
   const double start_ms = clock_ms_;
-  out.begins.push_back({move.id, move.source, start_ms, start_ms, move.length_uu});
+  out.begins.push_back({move.id, move.source, start_ms, start_ms, move.length_uu, move.rule});
   const RampParts parts = ramp_parts(ramp);
   rest_before_ = true;
   step_before_ = parts.count == 0 && !move.pvt;

@@ -24,6 +24,7 @@ struct MoveBegin {
   double sync_ms = 0;    // start of the blend into it
   double start_ms = 0;   // mid-blend
   double length_uu = 0;
+  TimeRule rule = TimeRule::kFeed;
 };
 /// Where a move ends: known when its successor has been added or the sequence ended.
 struct MoveEnd { std::uint64_t id = 0; double end_ms = 0; };

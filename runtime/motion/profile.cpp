@@ -106,7 +106,11 @@ double move_time_ms(double distance_mu, const JogParameters& jog) {
 /// Appends the pieces of a profile and keeps the state at their end.
 class ProfileBuilder {
  public:
-  ProfileBuilder(double start_ms, double position, double velocity) : time_(start_ms), position_(position), velocity_(velocity) {}
+  ProfileBuilder(double start_ms, double position, double velocity, const JogParameters& jog = {0, 0, 0})
+      : time_(start_ms), position_(position), velocity_(velocity) {
+    profile_.parameters_ = jog;
+    profile_.start_velocity_ = velocity;
+  }
 
   ProfileBuilder& ramp_to(double speed, const Ramp& ramp);
   /// Ramp from a start with acceleration.
@@ -176,7 +180,7 @@ namespace {
 MotorProfile move_over_peak(double start_ms, double position_mu, const Start& start, double target_mu, double peak,
                             const JogParameters& jog) {
   const double left = target_mu - position_mu - distance_over_peak(start, peak, jog);
-  ProfileBuilder builder(start_ms, position_mu, start.speed);
+  ProfileBuilder builder(start_ms, position_mu, start.speed, jog);
   builder.ramp_from(start, peak, jog);
   if (peak != 0) builder.cruise(left / peak);
   return builder.ramp_to(0, jog_ramp(peak, jog)).rest_at(target_mu);
@@ -189,7 +193,7 @@ MotorProfile MotorProfile::rest(double position_mu) { return ProfileBuilder(0, p
 MotorProfile MotorProfile::move(double start_ms, double position_mu, double velocity_mu_ms, double target_mu,
                                 const JogParameters& jog, double accel_mu_ms2) {
   const double distance = target_mu - position_mu;
-  if (distance == 0 && velocity_mu_ms == 0) return ProfileBuilder(start_ms, position_mu, 0).rest_at(target_mu);
+  if (distance == 0 && velocity_mu_ms == 0) return ProfileBuilder(start_ms, position_mu, 0, jog).rest_at(target_mu);
   const Start start = make_start(velocity_mu_ms, accel_mu_ms2, jog);
   return move_over_peak(start_ms, position_mu, start, target_mu, peak_speed(start, distance, jog), jog);
 }
@@ -197,7 +201,7 @@ MotorProfile MotorProfile::move(double start_ms, double position_mu, double velo
 MotorProfile MotorProfile::jog(double start_ms, double position_mu, double velocity_mu_ms, int direction,
                                const JogParameters& jog, double accel_mu_ms2) {
   const double speed = direction < 0 ? -jog.speed_mu_ms : jog.speed_mu_ms;
-  return ProfileBuilder(start_ms, position_mu, velocity_mu_ms)
+  return ProfileBuilder(start_ms, position_mu, velocity_mu_ms, jog)
       .ramp_from(make_start(velocity_mu_ms, accel_mu_ms2, jog), speed, jog)
       .cruise_for_ever();
 }
@@ -205,7 +209,7 @@ MotorProfile MotorProfile::jog(double start_ms, double position_mu, double veloc
 MotorProfile MotorProfile::stop(double start_ms, double position_mu, double velocity_mu_ms, const JogParameters& jog,
                                 double accel_mu_ms2) {
   const Start start = make_start(velocity_mu_ms, accel_mu_ms2, jog);
-  ProfileBuilder builder(start_ms, position_mu, velocity_mu_ms);
+  ProfileBuilder builder(start_ms, position_mu, velocity_mu_ms, jog);
   if (velocity_mu_ms != 0) builder.ramp_from(start, 0, jog);
   const double target_mu = velocity_mu_ms != 0 ? position_mu + distance_to_speed(start, 0, jog) : position_mu;
   return builder.rest_at(target_mu);
@@ -232,6 +236,16 @@ double MotorProfile::velocity_mu_ms(double time_ms) const {
 double MotorProfile::accel_mu_ms2(double time_ms) const {
   const Piece& piece = pieces_[static_cast<std::size_t>(piece_at(time_ms))];
   return 2 * piece.half_accel + 6 * piece.sixth_jerk * std::max(0.0, time_ms - piece.start_ms);
+}
+
+double MotorProfile::cruise_ms() const {
+  double sum_ms = 0;
+  for (int i = 0; i + 1 < count_; ++i) {
+    const Piece& piece = pieces_[static_cast<std::size_t>(i)];
+    const bool steady = piece.half_accel == 0 && piece.sixth_jerk == 0 && piece.velocity != 0;
+    if (steady) sum_ms += pieces_[static_cast<std::size_t>(i) + 1].start_ms - piece.start_ms;
+  }
+  return sum_ms;
 }
 
 double MotorProfile::end_ms() const { return end_ms_; }

@@ -32,8 +32,14 @@ class MotorProfile {
   double accel_mu_ms2(double time_ms) const;
   /// First time at or after from_ms at which the position is position_mu, exactly; infinity if never.
   double first_time_at(double position_mu, double from_ms) const;
+  double start_ms() const { return pieces_[0].start_ms; }
   double end_ms() const;      // infinity for a jog without end
   double target_mu() const;   // position at the end; the present one for a jog without end
+  /// What it was made with. speed_mu_ms is 0 at rest and where it only stops.
+  const JogParameters& parameters() const { return parameters_; }
+  double start_velocity_mu_ms() const { return start_velocity_; }
+  /// Time that it spends at its full speed before it ends.
+  double cruise_ms() const;
 
  private:
   friend class ProfileBuilder;
@@ -41,6 +47,8 @@ class MotorProfile {
   std::array<Piece, 16> pieces_{};
   int count_ = 0;
   double end_ms_ = 0;
+  JogParameters parameters_{0, 0, 0};
+  double start_velocity_ = 0;
   int piece_at(double time_ms) const;
 };
 

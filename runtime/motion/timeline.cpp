@@ -42,9 +42,23 @@ void Timeline::push(TimedSegment segment) {
 }
 
 void Timeline::prune() {
-  segments_.erase(segments_.begin(), segments_.begin() + static_cast<std::ptrdiff_t>(cursor_));
-  programmed_ms_.erase(programmed_ms_.begin(), programmed_ms_.begin() + static_cast<std::ptrdiff_t>(cursor_));
-  cursor_ = 0;
+  std::size_t kept = 0;
+  if (history_ms_ > 0 && cursor_ > 0) {
+    const double reached_ms = cursor_ < programmed_ms_.size() ? programmed_ms_[cursor_] : programmed_end_ms_;
+    const auto first = std::upper_bound(programmed_ms_.begin(), programmed_ms_.begin() + static_cast<std::ptrdiff_t>(cursor_), reached_ms - history_ms_);
+    kept = cursor_ - static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first - programmed_ms_.begin() - 1));
+  }
+  const auto gone = static_cast<std::ptrdiff_t>(cursor_ - kept);
+  segments_.erase(segments_.begin(), segments_.begin() + gone);
+  programmed_ms_.erase(programmed_ms_.begin(), programmed_ms_.begin() + gone);
+  cursor_ = kept;
+}
+
+double Timeline::history_start_ms(double time_ms, double amount_ms) const {
+  const auto at = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return end_of(s) <= time_ms; });
+  const double reached_ms = at == segments_.end() ? programmed_end_ms_ : programmed_ms_[static_cast<std::size_t>(at - segments_.begin())];
+  const auto first = std::lower_bound(programmed_ms_.begin(), programmed_ms_.end(), reached_ms - amount_ms);
+  return first == programmed_ms_.end() ? oldest_ms() : segments_[static_cast<std::size_t>(first - programmed_ms_.begin())].start_ms;
 }
 
 double Timeline::programmed_after(double time_ms) const {
@@ -65,6 +79,7 @@ SourceLine Timeline::source_at(double time_ms) const {
 
 void Timeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
   int done = 0;
+  while (cursor_ > 0 && count > 0 && end_of(segments_[cursor_ - 1]) > start_ms) --cursor_;  // the path is retraced, or a run was cut short
   while (done < count) {
     const double time_ms = start_ms + done * period_ms;
     while (cursor_ < segments_.size() && end_of(segments_[cursor_]) <= time_ms) ++cursor_;

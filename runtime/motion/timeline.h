@@ -18,8 +18,14 @@ class Timeline {
 
   /// Starts at or after the end of the one before.
   void push(TimedSegment segment);
-  /// Forgets segments that sample() has passed.
+  /// So much programmed time stays known behind the last sample, for retracing.
+  void keep_history(double programmed_ms) { history_ms_ = programmed_ms; }
+  /// Forgets segments that sample() has passed and that are no history either.
   void prune();
+  /// The earliest time that sample() and peek() may be asked for, and the one from which amount_ms of programmed time lead to time_ms
+  /// (the earliest where there is less).
+  double oldest_ms() const { return segments_.empty() ? end_ms_ : segments_.front().start_ms; }
+  double history_start_ms(double time_ms, double amount_ms) const;
 
   double end_ms() const { return end_ms_; }
   double sampled_ms() const { return sampled_ms_; }
@@ -44,6 +50,7 @@ class Timeline {
   std::deque<TimedSegment> segments_;
   std::deque<double> programmed_ms_;  // [segment] programmed time of all segments before it
   double programmed_end_ms_ = 0;
+  double history_ms_ = 0;           // programmed time that prune() leaves
   std::size_t cursor_ = 0;          // first segment that ends after the last sample
   double end_ms_ = 0;
   double sampled_ms_ = 0;

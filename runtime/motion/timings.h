@@ -34,7 +34,7 @@ class Timings {
 
  private:
   struct Place { double programmed_ms = 0, time_ms = 0; bool given = false, known = false; };
-  struct Record { std::uint64_t id = 0; double length_uu = 0; Place sync, start, end; };
+  struct Record { std::uint64_t id = 0; double length_uu = 0; Place sync, start, end; TimeRule rule = TimeRule::kFeed; };
   void cover_place(Place& place, const TimedSegment& segment, bool round_up) const;
   void cover_now(Place& place) const;
   void note_start(const Record& record);

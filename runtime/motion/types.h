@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -61,10 +62,14 @@ struct MotorLimits {
   double inv_amax_ms2_mu = 0;
   double inv_dmax_ms2_mu = 0;
   double inv_jmax_ms3_mu = 0;
+  double min_position_mu = -std::numeric_limits<double>::infinity(), max_position_mu = std::numeric_limits<double>::infinity();  // lookahead only
 };
 
 enum class FineInterpolation : std::uint8_t { kThrough, kBspline };
 enum class RampRule : std::uint8_t { kPower, kTurbo };
+
+/// Velocities through a kinematic routine. axis_uu_ms in, motor_mu_ms ([motor]) out.
+struct RoutineRates { const AxisVector& axis_uu_ms; double* motor_mu_ms; };
 
 /// Motor positions of an axis position. Either a linear map, or a routine called once a segment.
 struct MotorMap {
@@ -75,6 +80,8 @@ struct MotorMap {
   std::vector<double> offset_mu;
   /// Kinematic routine: axis_uu[kAxisCount] -> motor_mu[motors.size()]. Returns the reason where it has no solution.
   std::function<std::optional<runtime::Fault>(const AxisVector& axis_uu, double* motor_mu, SourceLine source)> inverse;
+  /// The same with velocities; where inverse is set.
+  std::function<std::optional<runtime::Fault>(const AxisVector& axis_uu, const RoutineRates& rates, double* motor_mu, SourceLine source)> inverse_rates;
 };
 
 /// Set-up of one coordinate system's pipeline, constant while a sequence runs.
@@ -83,7 +90,9 @@ struct PipelineConfig {
   FineInterpolation fine = FineInterpolation::kThrough;
   RampRule ramp_rule = RampRule::kPower;
   bool lookahead = false;               // segmented only
+  bool limit_jerk = false;              // lookahead keeps InvJmax as well
   int lookahead_segments = 0;           // LHDistance
+  double history_ms = 0;                // programmed time behind the last sample that stays known, for retracing
   double servo_period_ms = 0.44274211;  // at which limits are counted where the path's velocity steps; 0: stop there
   double radius_error_limit_uu = 0;     // 0: off
   double min_arc_len = 0;               // semicircles; 0: 2^-20
@@ -93,9 +102,19 @@ struct PipelineConfig {
   double corner_dwell_bp = 0;           // cosine; 0: off
   double added_dwell_ms = 0;            // at corners of corner_dwell_bp
   bool jerk_limit_unsegmented = false;  // InvJmax acts on unsegmented S-curve ramps
+  bool note_governing = false;          // say of every move which limits held it back
   std::vector<MotorLimits> limits;      // [motor], as MotorMap::motors
   MotorMap map;
 };
+
+/// What the time of a block comes from. kSegment: a delay of at least one segment; kOwnTime: delay, pvt, spline.
+enum class TimeRule : std::uint8_t {
+  kFeed, kMoveTime, kInverseTime, kSecondFeedAxes, kAltFeedRate, kMaxFeedRate, kMaxCirAccel, kRamps, kMotorSpeed, kSegment, kOwnTime
+};
+/// What held a move back for a part of its time. kProgram: nothing, it runs as programmed; kLookahead: no limit is used up, but a stop
+/// or a step ahead is prepared; kJog*: speed and ramps of a rapid move or jog.
+enum class GoverningLimit : std::uint8_t { kProgram, kMaxSpeed, kInvAmax, kLookahead, kJogSpeed, kJogRamp };
+struct GoverningShare { GoverningLimit limit; int motor; double time_ms; };  // motor -1: none
 
 /// When a command was executed. Times in the pipeline's own time.
 struct MoveTiming {
@@ -103,6 +122,8 @@ struct MoveTiming {
   double sync_ms = 0;                   // its synchronous assignments are due: start of the blend into it, then the next segment boundary
   double start_ms = 0, end_ms = 0;      // a blended corner counts at mid-blend
   double length_uu = 0;                 // along the path, over the axes that counted for the feed rate; 0 for a delay
+  TimeRule rule = TimeRule::kFeed;
+  std::vector<GoverningShare> governed = {};  // longest first; only with PipelineConfig::note_governing
 };
 
 /// The synchronous assignments of a command are due; known as soon as the blend into it is committed, before its end is.

@@ -14,9 +14,12 @@ struct SampleBlock {
   double period_ms = 0;
   int count = 0;
   std::span<const int> motors;        // numbers, ascending
-  std::span<const double> position_mu;// [motor][count], from home
+  std::span<const double> position_mu;// [motor][count], commanded, from home
+  std::span<const double> actual_mu;  // likewise, where the motors are
+  std::span<const double> home_mu;    // [motor], of home from power-on
   double time_ms(int k) const { return static_cast<double>(first_tick + k) * period_ms; }
   double at(int motor_index, int k) const { return position_mu[static_cast<std::size_t>(motor_index) * count + k]; }
+  double actual_at(int motor_index, int k) const { return actual_mu[static_cast<std::size_t>(motor_index) * count + k]; }
 };
 
 /// Takes servo samples as they are made. Blocks follow each other without gap or overlap.

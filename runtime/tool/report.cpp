@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/tool/limit_report.h"
+
 namespace pmac::tool {
 namespace {
 
@@ -25,6 +27,7 @@ ordered_json move_json(const runtime::Machine& machine, const runtime::MoveRecor
   j["start_s"] = move.start_ms / 1000.0;
   j["end_s"] = move.end_ms / 1000.0;
   j["length"] = move.length;
+  if (!move.governed.empty()) j["governed"] = governed_json(move);
   return j;
 }
 
@@ -33,6 +36,7 @@ ordered_json fault_json(const runtime::Machine& machine, const runtime::FaultRec
   put_source(j, machine, record.fault.source);
   if (record.coord >= 0) j["coord"] = record.coord;
   if (record.plc >= 0) j["plc"] = record.plc;
+  if (record.motor >= 0) j["motor"] = record.motor;
   j["time_s"] = record.time_ms / 1000.0;
   j["error_status"] = runtime::error_status(record.fault.kind);
   j["text"] = record.fault.detail;
@@ -44,6 +48,10 @@ ordered_json fault_json(const runtime::Machine& machine, const runtime::FaultRec
 void Report::add(const runtime::MoveRecord& move) {
   ++move_count_;
   if (keep_moves_) moves_.push_back(move);
+}
+
+void Report::add(const runtime::JerkJoin& join) {
+  if (++join_count_ <= kMostJoins) joins_.push_back(join);
 }
 
 std::string status_name(const runtime::Machine& machine, const runtime::RunOutcome& outcome) {
@@ -72,6 +80,7 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
   j["motors"] = ordered_json::object();
   for (const auto& row : statistics.rows())
     j["motors"][std::to_string(row.motor)] = {{"final", row.final_mu}, {"max_speed", row.max_speed_mu_ms}, {"max_accel", row.max_accel_mu_ms2}};
+  if (!limits_.empty()) j["limits"] = limit_json(machine, limits_);
   if (detail == JsonDetail::kMoves) {
     j["outputs"] = ordered_json::array();
     for (const auto& change : outputs_) {
@@ -82,6 +91,15 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
   }
   j["faults"] = ordered_json::array();
   for (const auto& fault : faults_) j["faults"].push_back(fault_json(machine, fault));
+  if (join_count_ > 0) {
+    j["jerk_joins"] = ordered_json::array();
+    for (const auto& join : joins_) {
+      ordered_json o{{"time_s", join.time_ms / 1000.0}, {"coord", join.coord}, {"ratio", join.ratio}};
+      put_source(o, machine, join.source);
+      j["jerk_joins"].push_back(o);
+    }
+    j["jerk_join_count"] = join_count_;
+  }
   j["refused"] = ordered_json::array();
   for (const auto& [command, reason] : refusals_) j["refused"].push_back({{"command", command}, {"text", reason}});
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -96,6 +114,21 @@ std::string Report::text(const runtime::Machine& machine, const runtime::RunOutc
   for (const auto& r : statistics.rows())
     out += fmt::format("{:>5} {:>15.6g} {:>15.6g} {:>15.6g} {:>11.6g} {:>8.4f} {:>12.6g} {:>8.4f}\n", r.motor, r.final_mu, r.min_mu, r.max_mu,
                        r.max_speed_mu_ms, r.max_speed_at_ms / 1000.0, r.max_accel_mu_ms2, r.max_accel_at_ms / 1000.0);
+  if (join_count_ > 0) out += fmt::format("{} joins at which the acceleration of the path itself steps, and the jerk is not limited:\n", join_count_);
+  for (const auto& join : joins_)
+    out += fmt::format("{:>12.6f} s  {}: {:.3g} times the limit of the jerk\n", join.time_ms / 1000.0, machine.place(join.source), join.ratio);
+  return out;
+}
+
+std::string Report::move_log(const runtime::Machine& machine) const {
+  constexpr std::size_t kShown = 1000;
+  std::vector<runtime::MoveRecord> ordered = moves_;
+  std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.start_ms < b.start_ms; });
+  std::string out = ordered.empty() ? "" : "move               from s        to s  governed by\n";
+  for (std::size_t i = 0; i < std::min(ordered.size(), kShown); ++i)
+    out += fmt::format("{:<12} {:>12.6f} {:>11.6f}  {}  ({})\n", ordered[i].mode, ordered[i].start_ms / 1000, ordered[i].end_ms / 1000,
+                       governed_text(ordered[i]), machine.place(ordered[i].source));
+  if (ordered.size() > kShown) out += fmt::format("and {} more moves; --stats --json tells all of them\n", ordered.size() - kShown);
   return out;
 }
 

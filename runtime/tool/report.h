@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/machine.h"
+#include "runtime/servo/limit_check.h"
 #include "runtime/servo/servo.h"
 #include "runtime/tool/options.h"
 
@@ -19,6 +20,9 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+  void add(const runtime::JerkJoin& join);
+  /// Of --check-limits, when the run is over.
+  void add_limits(std::vector<runtime::LimitCheck::Row> rows) { limits_ = std::move(rows); }
   void add_refusal(const std::string& command, const std::string& reason) { refusals_.emplace_back(command, reason); }
 
   /// Moves in order of their start. The object of --json; see docs/pmac-run.md for its keys.
@@ -27,6 +31,8 @@ class Report {
   /// The lines of --stats.
   std::string text(const runtime::Machine& machine, const runtime::RunOutcome& outcome, const runtime::MotionStatistics& statistics,
                    double wall_s) const;
+  /// Every move with what governed it, a line each; the first ones where there are many.
+  std::string move_log(const runtime::Machine& machine) const;
   /// The log of output changes, a line each.
   std::string output_log(const runtime::Machine& machine) const;
   /// Commands that were refused, other than those of the console, which are answered there.
@@ -39,7 +45,11 @@ class Report {
   std::vector<runtime::MoveRecord> moves_;
   std::vector<runtime::OutputChange> outputs_;
   std::vector<runtime::FaultRecord> faults_;
+  static constexpr std::size_t kMostJoins = 1000;   // kept; the others are counted
+  std::size_t join_count_ = 0;
+  std::vector<runtime::JerkJoin> joins_;
   std::vector<std::pair<std::string, std::string>> refusals_;   // command, reason
+  std::vector<runtime::LimitCheck::Row> limits_;
 };
 
 /// "idle", "until", "fault", "time-limit" or "budget".

@@ -276,6 +276,6 @@ TEST_CASE("holds, pauses and time bases that cannot be are refused", "[programs]
   bench.run("&1 %50");
   REQUIRE(bench.refusals.size() == 6);
   CHECK(bench.refusals[3].find("error #23") != std::string::npos);
-  CHECK(bench.refusals[4].find("not simulated") != std::string::npos);
+  CHECK(bench.refusals[4].find("on no path") != std::string::npos);
   CHECK(bench.refusals[5].find("TimeBaseSlew") != std::string::npos);
 }
