@@ -1,3 +1,4 @@
+#include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/frontend/power_pmac/word_lexer.h"
 
 #include <algorithm>
@@ -212,6 +213,7 @@ std::size_t WordLexer::exponent_length(std::size_t at) const {
 /// The first run of a word whose every run of letters is a keyword, a letter or an axis; kind 0 otherwise.
 WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const {
   Word first{0, 0};
+  if (word.size() > kMaxWord) return first;
   for (std::size_t at = 0; at < word.size();) {
     const std::size_t length = run_length(word.substr(at));
     const bool digit_follows = at + length < word.size();
