@@ -28,6 +28,9 @@
 namespace pmac::motion {
 struct StageObservers;
 }
+namespace pmac::kinematics {
+class Robot;
+}
 
 namespace pmac::runtime {
 
@@ -145,9 +148,18 @@ class Machine {
   /// Axes of a coordinate system that have motors, as a mask; and their positions for motor positions by motor number
   /// (the forward map). False where the forward routine has no solution.
   std::uint32_t axes_of(int coord) const;
-  bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu);
+  bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu, std::string* why = nullptr);
   /// Motor positions of an axis position, into motor_mu by motor number; the fault where there is none.
   std::optional<Fault> motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu);
+  /// A stock robot in place of the kinematic routines of a coordinate system: its motors ->I, ascending, are the joints, each with its
+  /// motor units per mm or degree (one number for all, or one a joint).
+  void set_robot(int coord, std::shared_ptr<const kinematics::Robot> robot, std::vector<double> motor_mu_per_joint);
+  /// The coordinate system has motors ->I.
+  bool has_kinematics(int coord) const;
+  /// Motors ->I of a coordinate system, ascending.
+  std::vector<int> kinematic_motors(int coord) const;
+  /// Motor[].MinPos and MaxPos; nullopt where they are no range.
+  std::optional<std::pair<double, double>> motor_range_mu(int motor) const;
 
   /// What a motor does at a tick of the block that the sinks are being given, and the limits that hold for it.
   MotorActivity activity(int motor, double time_ms) const;

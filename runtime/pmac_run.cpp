@@ -11,12 +11,14 @@
 #include "runtime/machine.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/emit.h"
+#include "runtime/tool/kin_check.h"
 #include "runtime/tool/limit_report.h"
 #include "runtime/tool/load.h"
 #include "runtime/tool/options.h"
 #include "runtime/tool/outputs.h"
 #include "runtime/tool/recorder.h"
 #include "runtime/tool/report.h"
+#include "runtime/tool/robots.h"
 
 namespace {
 
@@ -152,8 +154,10 @@ int run(const RunOptions& options) {
   machine.add_sink(&recorder);
   emitter.attach(machine, recorder);
 
+  if (const int code = set_robots(options, machine); code != kExitOk) return code;
   if (const int code = load_files(options, session, machine); code != kExitOk) return code;
   for (const std::string& text : options.commands) machine.command(text, "-e");
+  if (options.kin_check.enabled) return check_kinematics(options, machine);
   for (const auto& [time_s, text] : options.timed_commands) machine.at(time_s * 1000.0, text);
 
   catch_signals();
@@ -192,6 +196,7 @@ int main(int argc, char** argv) {
   try {
     RunOptions options;
     if (const auto code = parse_options(argc, argv, options)) return *code;
+    if (options.robots.size() == 1 && options.robots[0] == "list") return list_robots();
     if (const std::string file = unknown_ending(options); !file.empty()) {
       std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
       return kExitUsage;

@@ -77,7 +77,9 @@ void CoordSystem::fail(double time_ms, Fault fault) {
 
 void CoordSystem::fail_at_once(double time_ms, Fault fault) {
   abort(time_ms);
-  machine_.elements.set(ElementId::kCoordErrorStatus, error_status(fault.kind), static_cast<unsigned>(number_));
+  const bool of_routine = fault.kind == FaultKind::kInverseKinematics && kinematics_.error_status != 0;
+  const double status = of_routine ? kinematics_.error_status : error_status(fault.kind);
+  machine_.elements.set(ElementId::kCoordErrorStatus, status, static_cast<unsigned>(number_));
   machine_.report_fault({time_ms, number_, -1, std::move(fault)});
 }
 

@@ -10,7 +10,7 @@ constexpr double kLongestStep_ms = 5, kStepsPerRamp = 8, kStepsPerMove = 32, kSh
 constexpr double kLongestPart_ms = 1;      // cubics of motor positions over at most this
 constexpr double kShortestPart_ms = 1e-7;  // what is shorter is added to its neighbour
 constexpr double kArrived_mu = 1e-7;       // relative to 1 + the length of the path's unit; nearer than this is there
-constexpr double kJump = 0.5;              // of the jerk limit: steps of acceleration that are worth a note; fits make smaller ones
+constexpr double kJump = 0.05;             // of the jerk limit: steps of acceleration that are worth a note
 
 /// The shortest time in which any motor can build up its acceleration.
 double ramp_ms(const std::vector<MotorLimits>& limits) {

@@ -8,8 +8,8 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of a motor's acceleration and jerk that the path's own shape may take at its highest speed; the rest is for changes of the speed.
-constexpr double kAccelShare = 0.999, kJerkShare = 0.9;
-constexpr double kTurn_rad = 0.1;     // of the tangent in one cell
+constexpr double kSpeedShare = 0.998, kAccelShare = 0.999, kJerkShare = 0.9;
+constexpr double kTurn_rad = 0.05;    // of the tangent in one cell
 constexpr double kChange = 0.3;       // of the curvature in one cell, of its greatest,
 constexpr double kSlightTurn_rad = 0.01;   // where the tangent turns by more than this
 constexpr int kHalvings = 12;         // of a segment into cells
@@ -85,7 +85,7 @@ PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms
     result.curvature_mu.push_back(curvature);
     if (m >= limits_.size()) continue;
     const double speed_limit = limits_[m].max_speed_mu_ms, inv_accel = limits_[m].inv_amax_ms2_mu / share;
-    if (speed_limit > 0 && tangent != 0) result.max_speed2 = std::min(result.max_speed2, speed_limit * speed_limit / (tangent * tangent));
+    if (speed_limit > 0 && tangent != 0) result.max_speed2 = std::min(result.max_speed2, kSpeedShare * speed_limit * speed_limit / (tangent * tangent));
     if (inv_accel > 0 && curvature != 0) result.max_speed2 = std::min(result.max_speed2, kAccelShare / (inv_accel * std::abs(curvature)));
   }
   return result;

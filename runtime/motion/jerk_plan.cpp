@@ -8,7 +8,7 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of the limits that a plan may use. What lies between the places that are looked at is in the rest.
-constexpr double kAccel = 0.9995, kJerk = 0.997;
+constexpr double kSpeed = 0.999, kAccel = 0.9995, kJerk = 0.997;
 /// Of these, what braking uses: a plan has room for being followed from a slightly other state.
 constexpr double kBrake = 0.999;
 /// It lets go where that takes this part of the jerk limit.
@@ -58,10 +58,19 @@ bool JerkPlan::passes(const PathCell& cell, double at_mu, double speed, double a
     const double k = between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], part);
     const double motor_accel = k * speed * speed + t * accel;
     const double motor_jerk = cell.curvature_rate[m] * speed * speed * speed + 3 * k * speed * accel + t * jerk;
-    good = std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
+    const bool slow = limits[m].max_speed_mu_ms <= 0 || std::abs(t) * speed <= limits[m].max_speed_mu_ms * kSpeed;
+    good = slow && std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
   }
   if (!good) trouble_ = {at_mu, std::sqrt(max_speed2), false};
   return good;
+}
+
+/// The highest speed of a step in which speeding up ends.
+bool JerkPlan::peak_passes(const PathState& state, double jerk) {
+  const double v = state.speed_mu_ms, a = state.accel_mu_ms2, t = -a / jerk, at_mu = state.at.at_mu + t * (v + t * (a / 2 + t * jerk / 6));
+  std::size_t at = state.at.cell;
+  while (at_mu > path_.cell(at).end_mu() && at + 1 < path_.cell_end()) ++at;
+  return passes(path_.cell(at), at_mu, v + a * t / 2, 0, jerk);
 }
 
 /// Runs the step from the state; false, with the trouble noted, where it breaks a limit or leaves the known path.
@@ -75,6 +84,7 @@ bool JerkPlan::advance(PathState& state, const JerkStep& step) {
   }
   std::size_t at = state.at.cell;
   if (!passes(path_.cell(at), from_mu, v0, a0, j)) return false;
+  if (a0 > 0 && a1 < 0 && !peak_passes(state, j)) return false;
   while (to_mu > path_.cell(at).end_mu()) {
     const PathCell& cell = path_.cell(at);
     const double part = to_mu > from_mu ? (cell.end_mu() - from_mu) / (to_mu - from_mu) : 0;
@@ -93,7 +103,7 @@ bool JerkPlan::advance(PathState& state, const JerkStep& step) {
 }
 
 /// What the motors leave of acceleration and jerk along the path. False where there is nothing.
-bool JerkPlan::ranges(const PathState& state, Within within, double& accel_low, double& accel_high, double& jerk_low, double& jerk_high) const {
+bool JerkPlan::ranges(const PathState& state, Within within, Ranges& out) const {
   const PathCell& cell = path_.cell(state.at.cell);
   const double part = std::clamp((state.at.at_mu - cell.from_mu) / cell.length_mu, 0.0, 1.0), v = state.speed_mu_ms;
   const auto& limits = path_.limits();
@@ -108,11 +118,21 @@ bool JerkPlan::ranges(const PathState& state, Within within, double& accel_low, 
   const bool each = within == Within::kEach;
   if (!each && !(accel.together(kAccel) && jerk.together(kJerk))) return false;
   const bool any = accel.low <= accel.high && jerk.low <= jerk.high;
-  accel_low = accel.low;
-  accel_high = accel.high;
-  jerk_low = jerk.low;
-  jerk_high = jerk.high;
+  out = {accel.low, accel.high, jerk.low, jerk.high};
   return any;
+}
+
+/// And what they leave at the end of a step, as it would be.
+void JerkPlan::narrow_to_end(const PathState& state, const JerkStep& step, Within within, Ranges& ranges) const {
+  const double h = step.duration_ms, j = step.jerk_mu_ms3, v = state.speed_mu_ms, a = state.accel_mu_ms2;
+  PathState end{{state.at.cell, state.at.at_mu + h * (v + h * (a / 2 + h * j / 6))}, std::max(0.0, v + h * (a + h * j / 2)), a + h * j};
+  while (end.at.at_mu > path_.cell(end.at.cell).end_mu() && end.at.cell + 1 < path_.cell_end()) ++end.at.cell;
+  Ranges there;
+  if (!this->ranges(end, within, there)) return;
+  ranges.accel_low = std::max(ranges.accel_low, there.accel_low);
+  ranges.accel_high = std::min(ranges.accel_high, there.accel_high);
+  ranges.jerk_low = std::max(ranges.jerk_low, there.jerk_low);
+  ranges.jerk_high = std::min(ranges.jerk_high, there.jerk_high);
 }
 
 /// Brakes as hard as the limits allow, and lets go in time to arrive at the speed with no acceleration left:
@@ -120,22 +140,23 @@ bool JerkPlan::ranges(const PathState& state, Within within, double& accel_low, 
 ///   a  0 --\             /--      lets go with the jerk a^2 / 2(v - speed), as soon as it would take the limit
 ///           \___________/
 bool JerkPlan::brake_to(PathState& state, double speed_mu_ms, Within within, std::vector<JerkStep>& steps) {
-  double accel_low, accel_high, jerk_low, jerk_high;
+  Ranges room;
   for (int count = 0; count < kMostSteps; ++count) {
     const double over = state.speed_mu_ms - speed_mu_ms, a = state.accel_mu_ms2;
     const double nothing = kRounding * (speed_mu_ms + step_ms_ * std::abs(a)) + 1e-15;
     if (std::abs(over) <= nothing && std::abs(a) * step_ms_ <= 2 * nothing + 1e-12) return true;
-    if (over <= 0 || !ranges(state, within, accel_low, accel_high, jerk_low, jerk_high)) {
+    if (over <= 0 || !ranges(state, within, room)) {
       trouble_ = {state.at.at_mu, state.speed_mu_ms, false};
       return false;
     }
-    const double brake = std::max(jerk_low * kBrake, -1e12), most = std::min(jerk_high * kBrake, 1e12);
+    narrow_to_end(state, {step_ms_, std::max({room.jerk_low, (room.accel_low - a) / step_ms_, -1e12})}, within, room);
+    const double brake = std::max(room.jerk_low * kBrake, -1e12), most = std::min(room.jerk_high * kBrake, 1e12);
     const auto can_let_go = [&](double v, double accel) { return v > 0 && (accel >= 0 || accel * accel <= 2 * v * most); };
     JerkStep step{step_ms_, brake};
     bool lets_go = true;
     for (int i = 0; i < kHalvings && lets_go; ++i) {
       step.duration_ms = step_ms_ / (1 << i);
-      step.jerk_mu_ms3 = std::max(brake, (accel_low * kBrake - a) / step.duration_ms);
+      step.jerk_mu_ms3 = std::max(brake, (room.accel_low * kBrake - a) / step.duration_ms);
       const double h = step.duration_ms, j = step.jerk_mu_ms3;
       lets_go = !can_let_go(over + h * (a + h * j / 2), a + h * j);
       if (a < 0 && a * a > 2 * over * most * kWholeRelease) break;
@@ -237,16 +258,17 @@ double JerkPlan::top_speed(const PathState& state) const {
 
 /// The fastest step that is certain to have a stop; false where only the plan is left.
 bool JerkPlan::try_fastest(const PathState& state) {
-  double accel_low, accel_high, jerk_low, jerk_high;
-  if (!ranges(state, Within::kEach, accel_low, accel_high, jerk_low, jerk_high)) return false;
-  const double v = state.speed_mu_ms, a = state.accel_mu_ms2, top = top_speed(state), room = top - v;
-  if (v > 0 && std::abs(a) * step_ms_ <= 1e-9 * top && room <= 1e-6 * top && try_step(state, {step_ms_, 0})) return true;
-  double jerk = std::min({jerk_high, (accel_high - a) / step_ms_, 1e12});
+  Ranges room;
+  if (!ranges(state, Within::kEach, room)) return false;
+  const double v = state.speed_mu_ms, a = state.accel_mu_ms2, top = top_speed(state), slack = top - v;
+  if (v > 0 && std::abs(a) * step_ms_ <= 1e-9 * top && slack <= 1e-6 * top && try_step(state, {step_ms_, 0})) return true;
+  narrow_to_end(state, {step_ms_, std::min({room.jerk_high, (room.accel_high - a) / step_ms_, 1e12})}, Within::kEach, room);
+  const double jerk = std::min({room.jerk_high, (room.accel_high - a) / step_ms_, 1e12});
   const double next_v = v + step_ms_ * (a + step_ms_ * jerk / 2), next_a = a + step_ms_ * jerk;
-  const bool overshoots = a > 0 && (next_v >= top || next_a * next_a > 2 * (top - next_v) * -jerk_low * kBrake);
-  if (overshoots && room > 0) {
-    const double ease = -a * a / (2 * room);
-    if (ease >= jerk_low && try_step(state, {std::min(step_ms_, -a / ease), ease})) return true;
+  const bool overshoots = a > 0 && (next_v >= top || next_a * next_a > 2 * (top - next_v) * -room.jerk_low * kBrake);
+  if (overshoots && slack > 0) {
+    const double ease = -a * a / (2 * slack);
+    if (ease >= room.jerk_low && try_step(state, {std::min(step_ms_, -a / ease), ease})) return true;
   }
   if (try_step(state, {step_ms_, jerk})) return true;
   Trouble why = trouble_;

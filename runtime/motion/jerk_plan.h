@@ -41,11 +41,14 @@ class JerkPlan {
  private:
   struct Trouble { double at_mu = 0, max_speed_mu_ms = 0; bool at_end = false; };
   bool advance(PathState& state, const JerkStep& step);
+  bool peak_passes(const PathState& state, double jerk);
   bool passes(const PathCell& cell, double at_mu, double speed, double accel, double jerk);
   /// How acceleration and jerk are held to the motors' limits: each motor its own, or the root of the sum of the squares of all, in limits.
   /// The second holds on a curve whichever way it turns.
   enum class Within { kEach, kTogether };
-  bool ranges(const PathState& state, Within within, double& accel_low, double& accel_high, double& jerk_low, double& jerk_high) const;
+  struct Ranges { double accel_low, accel_high, jerk_low, jerk_high; };
+  bool ranges(const PathState& state, Within within, Ranges& out) const;
+  void narrow_to_end(const PathState& state, const JerkStep& step, Within within, Ranges& ranges) const;
   bool brake_to(PathState& state, double speed_mu_ms, Within within, std::vector<JerkStep>& steps);
   bool coast_to(PathState& state, double to_mu, std::vector<JerkStep>& steps);
   bool pass(PathState& state, const Trouble& trouble, Within within, std::vector<JerkStep>& steps);

@@ -108,3 +108,11 @@ TEST_CASE("spline: unequal times keep the acceleration continuous", "[programs][
   CHECK(last(bench, 1) == Approx(40.0).margin(1e-9));
   CHECK(last(bench, 2) == Approx(4.0).margin(1e-9));
 }
+
+TEST_CASE("pvt: acceleration limits of the motors put no ramp before an unsegmented move", "[programs][pvt]") {
+  const Lines bench("pvt200 X5:50\nX10:0", "Motor[1].InvAmax=10 Motor[1].InvDmax=10");   // the move needs 0.25 mu/ms^2
+  REQUIRE(bench.faults.empty());
+  CHECK(bench.moves[1].end_ms == Approx(400.0).margin(1e-9));
+  const auto [t, x] = at(bench, 1, 100);
+  CHECK(x == Approx(0.05 / 200 * t * t / 2).margin(1e-9));
+}
