@@ -8,7 +8,7 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of a motor's acceleration and jerk that the path's own shape may take at its highest speed; the rest is for changes of the speed.
-constexpr double kSpeedShare = 0.998, kAccelShare = 0.999, kJerkShare = 0.9;
+constexpr double kSpeedShare = 0.998, kAccelShare = 0.9965, kJerkShare = 0.9;
 constexpr double kTurn_rad = 0.05;    // of the tangent in one cell
 constexpr double kChange = 0.3;       // of the curvature in one cell, of its greatest,
 constexpr double kSlightTurn_rad = 0.01;   // where the tangent turns by more than this
