@@ -46,6 +46,20 @@ struct Room {
   }
 };
 
+/// When a place after from_ms is reached, at most h.
+double time_at(const PathState& state, double jerk, double at_mu, double from_ms, double h) {
+  double low = from_ms, high = h, t = (low + high) / 2;
+  for (int i = 0; i < 30 && high - low > 1e-9 * h; ++i) {
+    const double off = state.at.at_mu + t * (state.speed_mu_ms + t * (state.accel_mu_ms2 / 2 + t * jerk / 6)) - at_mu;
+    const double speed = state.speed_mu_ms + t * (state.accel_mu_ms2 + t * jerk / 2);
+    (off > 0 ? high : low) = t;
+    const double next = speed > 0 ? t - off / speed : low;
+    if (std::abs(next - t) < 1e-9 * h) return std::clamp(next, low, high);
+    t = next > low && next < high ? next : (low + high) / 2;
+  }
+  return t;
+}
+
 }  // namespace
 
 /// Whether the motors' limits allow this motion at a place of the cell.
@@ -60,7 +74,7 @@ bool JerkPlan::passes(const PathCell& cell, double at_mu, double speed, double a
     const double motor_accel = k * speed * speed + t * accel;
     const double motor_jerk = cell.curvature_rate[m] * speed * speed * speed + 3 * k * speed * accel + t * jerk;
     const bool slow = limits[m].max_speed_mu_ms <= 0 || std::abs(t) * speed <= limits[m].max_speed_mu_ms * kSpeed;
-    good = slow && std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
+    good = slow && std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel * cell.accel_share + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
   }
   if (!good) trouble_ = {at_mu, std::sqrt(max_speed2), false};
   return good;
@@ -84,12 +98,13 @@ bool JerkPlan::advance(PathState& state, const JerkStep& step) {
     return false;
   }
   std::size_t at = state.at.cell;
+  double t = 0;
   if (!passes(path_.cell(at), from_mu, v0, a0, j)) return false;
   if (a0 > 0 && a1 < 0 && !peak_passes(state, j)) return false;
   while (to_mu > path_.cell(at).end_mu()) {
     const PathCell& cell = path_.cell(at);
-    const double part = to_mu > from_mu ? (cell.end_mu() - from_mu) / (to_mu - from_mu) : 0;
-    const double speed = std::sqrt(std::max(0.0, between(v0 * v0, v1 * v1, part))), accel = between(a0, a1, part);
+    t = time_at(state, j, cell.end_mu(), t, h);
+    const double speed = std::max(0.0, v0 + t * (a0 + t * j / 2)), accel = a0 + t * j;
     const bool stands_past = cell.stops || at + 1 >= path_.cell_end();
     if (stands_past) {
       trouble_ = {cell.end_mu(), 0, at + 1 >= path_.cell_end() && !cell.stops};
@@ -112,7 +127,7 @@ bool JerkPlan::ranges(const PathState& state, Within within, Ranges& out) const 
   for (std::size_t m = 0; m < std::min(limits.size(), cell.start.tangent.size()); ++m) {
     const double t = between(cell.start.tangent[m], cell.end.tangent[m], part);
     const double k = between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], part);
-    const double inv_accel = limits[m].inv_amax_ms2_mu, inv_jerk = limits[m].inv_jmax_ms3_mu;
+    const double inv_accel = limits[m].inv_amax_ms2_mu / cell.accel_share, inv_jerk = limits[m].inv_jmax_ms3_mu;
     accel.add(k * v * v * inv_accel, t * inv_accel, kAccel);
     jerk.add((cell.curvature_rate[m] * v * v * v + 3 * k * v * state.accel_mu_ms2) * inv_jerk, t * inv_jerk, kJerk);
   }
