@@ -8,7 +8,7 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of a motor's acceleration and jerk that the path's own shape may take at its highest speed; the rest is for changes of the speed.
-constexpr double kSpeedShare = 0.998, kAccelShare = 0.999, kJerkShare = 0.9;
+constexpr double kSpeedShare = 0.998, kAccelShare = 0.9965, kJerkShare = 0.9;
 constexpr double kTurn_rad = 0.05;    // of the tangent in one cell
 constexpr double kChange = 0.3;       // of the curvature in one cell, of its greatest,
 constexpr double kSlightTurn_rad = 0.01;   // where the tangent turns by more than this
@@ -71,7 +71,7 @@ void JerkPath::clear() {
 
 /// Derivatives at at_ms, seen from the side of toward_ms: where the program rests the direction is that of leaving or arriving.
 PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms, double share) const {
-  constexpr double kInside = 1e-3;
+  constexpr double kInside = 0.05;
   const bool rests = speed2_at(segment, at_ms) < kInside * kInside * speed2_at(segment, (at_ms + toward_ms) / 2);
   const double seen_ms = rests ? at_ms + kInside * (toward_ms - at_ms) : at_ms, speed = std::sqrt(speed2_at(segment, seen_ms));
   PathPlace result;
@@ -96,6 +96,7 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   cell.from_mu = end_mu_;
   cell.length_mu = length_between(segment, from_ms, to_ms);
   cell.from_ms = from_ms;
+  cell.accel_share = share;
   cell.to_ms = to_ms;
   cell.segment = first_segment_ + segments_.size() - 1;
   cell.start = place(segment, from_ms, to_ms, share);

@@ -27,6 +27,7 @@ struct PathCell {
   std::size_t segment = 0;            // number, from the start of the path on
   PathPlace start, end;
   std::vector<double> curvature_rate; // [motor] 1/mu^2
+  double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
   double end_mu() const { return from_mu + length_mu; }
 };
