@@ -104,7 +104,7 @@ void Lowering::lower_at_once(P::OnlineContext* online, ir::Unit& unit) {
 /// clear prog 5 makes the buffer empty, like open prog 5 close.
 void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
   if (online->exception) return;
-  if (!online->NAME().empty()) return lower_clear_all(online, unit);
+  if (!online->ALL().empty()) return lower_clear_all(online, unit);
   if (!online->kind || !online->bufferName()) return;
   ir::Buffer buffer;
   buffer.span = buffer.close_span = span_of(online);
@@ -117,8 +117,7 @@ void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
 
 /// clear all buffers: empties the buffers that the file opened before it.
 void Lowering::lower_clear_all(P::OnlineContext* online, ir::Unit& unit) {
-  const bool known = online->NAME().size() == 2 && lower_case(text_of(token_of(online->NAME(0)))) == "all" && lower_case(text_of(token_of(online->NAME(1)))) == "buffers";
-  if (!known) {
+  if (online->ALL().size() != 2) {
     diagnostics_.error("PM2001", span_of(online), "clear takes a buffer (clear prog 5), or all buffers");
     return;
   }

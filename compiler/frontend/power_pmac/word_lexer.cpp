@@ -127,8 +127,9 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
   const Word whole_name{T::NAME, word.size()};
   const bool is_rest = begin < split_end_;
   if (last_[0] == T::DOT) return {T::MEMBER, word.size()};  // behind a dot
-  const bool closes_all = (last_[0] == T::CLOSE && lower(word) == "all") || (last_[0] == T::ALL && lower(word) == "buffers");
-  if (closes_all && line == last_line_) return {T::ALL, word.size()};  // close all buffers
+  const bool after_verb = last_[0] == T::CLOSE || last_[0] == T::CLEAR;
+  const bool all_of_them = (after_verb && lower(word) == "all") || (last_[0] == T::ALL && lower(word) == "buffers");
+  if (all_of_them && line == last_line_) return {T::ALL, word.size()};  // close all buffers, clear all buffers
   if (program_length_ > 0 && begin == program_begin_) return {T::NAME, program_length_};
   if (axis_definition_) {
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
