@@ -62,7 +62,7 @@ TEST_CASE("bytes behind a place belong to it, and numbers that are no address ar
   for (const double number : {0.0, -1.0, 5.0, 0x1p40 + 0.5, 0x1p53, 1e300}) CHECK_FALSE(decode_address(number, address));
 }
 
-TEST_CASE("what is saved is what differs from the defaults, in the order of the table", "[elements]") {
+TEST_CASE("what is saved is what was assigned, in the order of the table", "[elements]") {
   ElementStore store;
   CHECK(store.saved().empty());
   store.assign({ElementId::kMotorAdcMask, {1, 0, 0}}, 1);
@@ -70,7 +70,8 @@ TEST_CASE("what is saved is what differs from the defaults, in the order of the 
   store.assign({ElementId::kMotorJogSpeed, {3, 0, 0}}, 32);       // its default
   store.assign({ElementId::kSysCdTimer, {3, 0, 0}}, 100);         // not a saved element
   const auto saved = store.saved();
-  REQUIRE(saved.size() == 2);
+  REQUIRE(saved.size() == 3);
   CHECK(element_text(saved[0].first) == "Motor[2].JogSpeed");
-  CHECK(element_text(saved[1].first) == "Motor[1].AdcMask");
+  CHECK(element_text(saved[1].first) == "Motor[3].JogSpeed");
+  CHECK(element_text(saved[2].first) == "Motor[1].AdcMask");
 }
