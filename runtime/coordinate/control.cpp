@@ -1,6 +1,6 @@
 // Starting, stopping and going on: program control and time base of a coordinate system. Source: User's Manual p689-698; refusals,
-// Software Reference Manual p77. Inferred: a step counts a dwell and a delay as a move; abort ramps by the machine's time, whatever
-// the time base.
+// Software Reference Manual p77. Inferred: a step counts a dwell and a delay as a move; a pause among pvt moves waits for one that ends at
+// rest; abort ramps by the machine's time, whatever the time base.
 #include <algorithm>
 #include <cmath>
 
@@ -73,7 +73,7 @@ std::string CoordSystem::start_at(const ProgramHandle& program, std::int64_t lab
   aborted_ = {};
   machine_.elements.set(ElementId::kCoordErrorStatus, 0, static_cast<unsigned>(number_));
   block_ = {};
-  stop_requested_ = pause_requested_ = stepping_ = step_block_ = false;
+  stop_requested_ = pause_requested_ = pause_at_rest_ = stepping_ = step_block_ = false;
   sync_.clear();
   phase_ = Phase::kCalculating;
   resume_ms_ = time_ms;
@@ -105,6 +105,7 @@ std::string CoordSystem::pause(double time_ms) {
   const bool waits_for_interrupt = phase_ == Phase::kToRest && after_rest_ == AfterRest::kNextInterrupt;
   if (waits_for_interrupt) after_rest_ = AfterRest::kPause;
   else if (!between_items) pause_requested_ = true;
+  else if (pvt_goes_on()) pause_at_rest_ = true;
   else if (auto fault = come_to_rest(time_ms, AfterRest::kPause)) fail(time_ms, std::move(*fault));
   return {};
 }
@@ -112,7 +113,7 @@ std::string CoordSystem::pause(double time_ms) {
 void CoordSystem::pause_here(double time_ms) {
   phase_ = Phase::kPaused;
   resume_ms_ = kNever;
-  pause_requested_ = stepping_ = false;
+  pause_requested_ = pause_at_rest_ = stepping_ = false;
   note_pause(time_ms);
 }
 
@@ -266,7 +267,7 @@ void CoordSystem::drop_program() {
   home_motors_.clear();
   shaping_ = Shaping::kNone;
   shape_at_ms_ = kNever;
-  pause_requested_ = stepping_ = quick_stopped_ = false;
+  pause_requested_ = pause_at_rest_ = stepping_ = quick_stopped_ = false;
   limit_fault_.reset();
   rotary_state_ = RotaryState::kNone;
   phase_ = Phase::kIdle;

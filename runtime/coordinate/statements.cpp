@@ -1,5 +1,6 @@
 // What the motion statements of a program become: modes and parameters, items that wait for rest, and moves that go through
 // transformation, compensation and the spline into the pipeline. Source: User's Manual p665-742.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -157,7 +158,7 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   next_id_ += spline ? 3 : command.compensation_side != 0 || compensation_.active() ? 2 : 1;  // what is added has the ids between
   if (auto fault = spline ? add_to_spline(command, start) : hand_on(std::move(command), start)) return give_up(thread, *fault);
   collect_timings();
-  if (stepping_ && !step_block_) return stop_item(thread, AfterRest::kPause);
+  if (pauses_here()) return stop_item(thread, AfterRest::kPause);
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
   moves_without_time_ = 0;
   resume_ms_ = next_calculation_ms(machine_.now_ms);
@@ -176,8 +177,9 @@ std::optional<Fault> CoordSystem::add_to_spline(const motion::MotionCommand& com
   if (auto fault = pvt_has_ended(command.source)) return fault;
   if (command.compensation_side != 0 || compensation_.active())
     return Fault{FaultKind::kCcMoveType, command.source, "spline moves are not allowed while cutter compensation is on"};
+  if (const std::string why = spline_.misfit(modal.spline_time_ms); !why.empty()) return Fault{FaultKind::kPvt, command.source, why};
   spline_moves_.clear();
-  spline_.add(command, start_uu, spline_moves_);
+  spline_.add(command, modal.spline_time_ms, start_uu, spline_moves_);
   return add_spline_moves();
 }
 
@@ -191,6 +193,10 @@ std::optional<Fault> CoordSystem::add_spline_moves() {
   for (const motion::MotionCommand& command : spline_moves_)
     if (auto fault = add_to_path(command)) return fault;
   return std::nullopt;
+}
+
+bool CoordSystem::pvt_goes_on() const {
+  return std::any_of(pvt_velocity_uu_ms_.begin(), pvt_velocity_uu_ms_.end(), [](double v) { return v != 0; });
 }
 
 /// A pvt move that does not end at rest needs another one after it.

@@ -75,6 +75,13 @@ std::vector<double> motor_change(const Move& previous, const Move& next) {
   return change;
 }
 
+/// Longest blend into a move that leaves time for the one out of it. Times for ta and td make a block long enough for both; rates do
+/// not know the speeds of its neighbours, so that each blend gets half of the room there is.
+double room_in(const Move& next) {
+  const double room = 2 * next.time_ms - next.stop_ramp.total_ms();
+  return next.entry.ta < 0 ? std::min(room, next.time_ms) : room;
+}
+
 }  // namespace
 
 Join decide_join(const Move& previous, const Move& next, double entry_total_ms, const PipelineConfig& config) {
@@ -89,7 +96,7 @@ Join decide_join(const Move& previous, const Move& next, double entry_total_ms, 
   }
   if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) return {};
   const Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
-  const double room = std::min(2 * previous.time_ms - entry_total_ms, 2 * next.time_ms - next.stop_ramp.total_ms());
+  const double room = std::min(2 * previous.time_ms - entry_total_ms, room_in(next));
   Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after, 0};
   if (config.segment_time_ms > 0) {
     if (ramp.total_ms() > room) join.ramp = scaled_to(ramp, std::max(0.0, room));

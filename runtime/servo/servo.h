@@ -29,7 +29,7 @@ class SampleSink {
   virtual void take(const SampleBlock& block) = 0;
 };
 
-/// Worst speed and acceleration of every motor, from first and second differences of the samples. A home that moves is no motion.
+/// Worst speed and acceleration of every motor, from first and second differences of the samples.
 class MotionStatistics : public SampleSink {
  public:
   struct Row {
@@ -44,7 +44,7 @@ class MotionStatistics : public SampleSink {
   std::vector<Row> rows() const;
 
  private:
-  struct State { Row row; double previous_mu = 0, before_mu = 0, home_mu = 0; };
+  struct State { Row row; double previous_mu = 0, before_mu = 0; int known = 0; };
   std::vector<State> states_;  // by motor number
 };
 

@@ -21,6 +21,7 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+  void add(const runtime::JerkJoin& join);
   /// Of --check-limits, when the run is over.
   void add_limits(std::vector<runtime::LimitCheck::Row> rows) { limits_ = std::move(rows); }
   /// True for the first one of its kind; the others are counted. Beyond kMostRefusals kinds they are counted together.
@@ -48,6 +49,9 @@ class Report {
   std::vector<runtime::MoveRecord> moves_;
   std::vector<runtime::OutputChange> outputs_;
   std::vector<runtime::FaultRecord> faults_;
+  static constexpr std::size_t kMostJoins = 1000;   // kept; the others are counted
+  std::size_t join_count_ = 0;
+  std::vector<runtime::JerkJoin> joins_;
   static constexpr std::size_t kMostRefusals = 1000;
   struct Refusal { std::string command, reason; std::size_t count = 1; };
   std::vector<Refusal> refusals_;                                              // in order of their first time
