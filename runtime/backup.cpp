@@ -97,8 +97,8 @@ bool answer_structure(Machine::State& s, const Wanted& wanted) {
     const bytecode::ElementInfo& info = element_info(id);
     const bool has_value = info.type != ElementType::kStructure && info.type != ElementType::kSymbol;
     if (info.access != bytecode::ElementAccess::kSaved || !has_value || !belongs_to(info.name, wanted.structure)) continue;
-    any = true;
     const auto count = static_cast<std::uint32_t>(std::max(info.index_counts[0], 1));
+    any = any || wanted.first < count;
     const bool is_table = info.size() / count > kMostPlaces;
     for (std::uint32_t first = wanted.first; !is_table && first < count && first <= wanted.last; ++first) answer_places(s, id, first);
     for (const auto& [address, value] : assigned)

@@ -88,6 +88,7 @@ std::string rotary(const SystemCall& call) {
 std::string undefine(const SystemCall& call) {
   const bool all = call.word(1) == "all" || call.word(1) == "&*";
   const auto named = call.word(1).starts_with('&') ? number_in(call.word(1).substr(1)) : std::nullopt;
+  if (!all && !named && !call.word(1).empty()) return fmt::format("error #21: ILLEGAL PARAMETER: undefine {}; it takes all, or nothing", call.word(1));
   const int wanted = named ? static_cast<int>(*named) : call.thread.coord;
   for (Motor& m : call.s.motors) {
     if (m.coord < 0 || (!all && m.coord != wanted)) continue;

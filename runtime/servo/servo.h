@@ -29,7 +29,7 @@ class SampleSink {
   virtual void take(const SampleBlock& block) = 0;
 };
 
-/// Worst speed and acceleration of every motor, from first and second differences of the samples. A home that moves is no motion.
+/// Worst speed and acceleration of every motor, from first and second differences of the samples.
 class MotionStatistics : public SampleSink {
  public:
   struct Row {

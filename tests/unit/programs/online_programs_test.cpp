@@ -213,7 +213,9 @@ TEST_CASE("backup of a structure answers its defaults too", "[programs]") {
   CHECK(bench.answers.size() == 2 * one);
   bench.machine->command("backup motors");
   bench.machine->command("backup motor[1");
-  CHECK(bench.refusals.size() == 2);
+  bench.machine->command("backup motor[33].");
+  bench.machine->command("undefine X");
+  CHECK(bench.refusals.size() == 4);
 }
 
 TEST_CASE("date is the version's, time counts simulated seconds", "[programs]") {
