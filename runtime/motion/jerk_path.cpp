@@ -124,6 +124,9 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
     cell.start.max_speed2 = std::min(cell.start.max_speed2, speed * speed);
     cell.end.max_speed2 = std::min(cell.end.max_speed2, speed * speed);
   }
+  constexpr double kKink = 0.1;
+  const bool kinks = !cells_.empty() && !cells_.back().stops && bend_of(cells_.back().end, cell.start).turn_rad > kKink;
+  if (kinks && !(start_speed2 < 1e299)) stop_here();   // a bend too small for a cell
   end_mu_ = cell.end_mu();
   cells_.push_back(std::move(cell));
 }
