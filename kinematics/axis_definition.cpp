@@ -1,5 +1,7 @@
 // Linear axis definitions: a matrix from axes to motors, and its inverse for the start position of a program. Singular and
 // incomplete definitions are refused with the reason; gantries are allowed.
+#include <string_view>
+
 #include <Eigen/Dense>
 
 #include "kinematics/kinematics.h"
@@ -35,6 +37,29 @@ std::vector<int> deciding_rows(const std::vector<MotorDefinition>& definitions) 
   return rows;
 }
 
+/// A B C U V W X Y Z, then AA BB ...
+std::string axis_letters(int axis) {
+  constexpr std::string_view single = "ABCUVWXYZ", twice = "ABCDEFGHLMNOPQRSTUVWXYZ";
+  if (axis < static_cast<int>(single.size())) return std::string(1, single[static_cast<std::size_t>(axis)]);
+  return std::string(2, twice[static_cast<std::size_t>(axis) - single.size()]);
+}
+
+std::string listed(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) text += (text.empty() ? "" : " ") + item;
+  return text;
+}
+
+/// Motors whose rows depend on one another: those that a vector of the left null space weighs.
+std::vector<std::string> dependent_motors(const Eigen::MatrixXd& matrix, const std::vector<int>& rows, const std::vector<MotorDefinition>& definitions) {
+  const Eigen::MatrixXd weights = matrix.transpose().fullPivLu().kernel();
+  std::vector<std::string> motors;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    if (weights.row(static_cast<Eigen::Index>(r)).cwiseAbs().maxCoeff() > 1e-9)
+      motors.push_back(std::to_string(definitions[static_cast<std::size_t>(rows[r])].motor));
+  return motors;
+}
+
 }  // namespace
 
 AxisMap::AxisMap(std::vector<MotorDefinition> definitions) : definitions_(std::move(definitions)) { solve(); }
@@ -53,7 +78,9 @@ void AxisMap::solve() {
   if (axes_.empty()) return;
   solvable_ = false;
   if (rows_.size() < axes_.size()) {
-    reason_ = "fewer independent motors than axes";
+    std::vector<std::string> names;
+    for (const int axis : axes_) names.push_back(axis_letters(axis));
+    reason_ = "fewer independent motors (" + std::to_string(rows_.size()) + ") than axes (" + listed(names) + ")";
     return;
   }
   Eigen::MatrixXd matrix(rows_.size(), axes_.size());
@@ -61,7 +88,7 @@ void AxisMap::solve() {
     for (std::size_t c = 0; c < axes_.size(); ++c) matrix(r, c) = definitions_[rows_[r]].coefficient_mu_uu[axes_[c]];
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
   if (qr.rank() < static_cast<Eigen::Index>(axes_.size())) {
-    reason_ = "the axis definitions are singular: two motors stand for the same axis combination";
+    reason_ = "the axis definitions are singular: those of motors " + listed(dependent_motors(matrix, rows_, definitions_)) + " depend on one another";
     return;
   }
   const Eigen::MatrixXd inverse = qr.solve(Eigen::MatrixXd::Identity(rows_.size(), rows_.size()));
@@ -81,13 +108,26 @@ void AxisMap::motors_from_axes(const AxisVector& axis_uu, std::span<double> moto
   }
 }
 
+void AxisMap::motor_rates_from_axis_rates(const AxisVector& axis_rate, std::span<double> motor_rate) const {
+  for (std::size_t i = 0; i < definitions_.size(); ++i) {
+    if (definitions_[i].kind != Kind::kLinear) continue;
+    motor_rate[i] = 0;
+    for (int axis : axes_) motor_rate[i] += definitions_[i].coefficient_mu_uu[axis] * axis_rate[axis];
+  }
+}
+
 void AxisMap::axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu) const {
+  std::vector<double> from_origin(motor_mu.begin(), motor_mu.end());
+  for (std::size_t i = 0; i < definitions_.size(); ++i) from_origin[i] -= definitions_[i].offset_mu;
+  axis_rates_from_motor_rates(from_origin, axis_uu);
+}
+
+void AxisMap::axis_rates_from_motor_rates(std::span<const double> motor_rate, AxisVector& axis_rate) const {
   if (!solvable_) return;
   for (std::size_t c = 0; c < axes_.size(); ++c) {
     double sum = 0;
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      sum += inverse_uu_mu_[c * rows_.size() + r] * (motor_mu[rows_[r]] - definitions_[rows_[r]].offset_mu);
-    axis_uu[axes_[c]] = sum;
+    for (std::size_t r = 0; r < rows_.size(); ++r) sum += inverse_uu_mu_[c * rows_.size() + r] * motor_rate[rows_[r]];
+    axis_rate[axes_[c]] = sum;
   }
 }
 

@@ -1,10 +1,9 @@
-// The way into kinematics: axes to motors and back. Linear axis definitions (#1->1000X) are rows of a matrix; script routines
-// arrive as callables. Nothing here knows the compiler or the runtime.
+// The way into kinematics: axes to motors and back. Linear axis definitions (#1->1000X) are rows of a matrix; stock robots stand behind
+// the interface of robot.h. Nothing here knows the compiler or the runtime.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,6 +46,9 @@ class AxisMap {
   void motors_from_axes(const AxisVector& axis_uu, std::span<double> motor_mu) const;
   /// Overwrites the axes in linear_axes() with the solution. Only when solvable().
   void axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu) const;
+  /// The same of velocities (or any derivative): offsets do not count.
+  void motor_rates_from_axis_rates(const AxisVector& axis_rate, std::span<double> motor_rate) const;
+  void axis_rates_from_motor_rates(std::span<const double> motor_rate, AxisVector& axis_rate) const;
 
  private:
   void solve();
@@ -57,14 +59,6 @@ class AxisMap {
   std::vector<int> axes_;                // column -> axis index
   std::vector<int> rows_;                // row -> definition index of the motors that decide
   std::vector<double> inverse_uu_mu_;    // row-major [axis column][row]
-};
-
-/// Script routines as callables, one pair a coordinate system.
-struct ScriptKinematics {
-  /// motor_mu by motor number -> axis_uu of the axes in the returned mask; nullopt: no solution.
-  std::function<std::optional<std::uint32_t>(std::span<const double> motor_mu, AxisVector& axis_uu)> forward;
-  /// axis_uu -> motor_mu by motor number; false: no solution.
-  std::function<bool(const AxisVector& axis_uu, std::span<double> motor_mu)> inverse;
 };
 
 /// Shoulder, elbow, wrist and vertical motor of a SCARA arm, degrees and mm.

@@ -18,11 +18,17 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 double limit_of(double value) { return value > 0 ? value : kNone; }
 double limit_of_inverse(double inverse) { return inverse > 0 ? 1 / inverse : kNone; }
 
-void limits_of_path(const ElementStore& e, unsigned motor, MotorActivity& activity) {
+/// In lookahead by option; without segmentation where InvJmax has been assigned.
+bool jerk_is_limited(const Machine::State& s, unsigned motor, unsigned coord) {
+  const bool segmented = s.elements.get(ElementId::kCoordSegMoveTime, coord) > 0;
+  return segmented ? s.options.limit_jerk : s.elements.assigned(ElementId::kMotorInvJmax, motor);
+}
+
+void limits_of_path(const ElementStore& e, unsigned motor, bool limits_jerk, MotorActivity& activity) {
   activity.max_speed_mu_ms = limit_of(e.get(ElementId::kMotorMaxSpeed, motor));
   activity.max_accel_mu_ms2 = activity.max_stop_mu_ms2 = limit_of_inverse(e.get(ElementId::kMotorInvAmax, motor));
   if (e.assigned(ElementId::kMotorInvDmax, motor)) activity.max_stop_mu_ms2 = limit_of_inverse(e.get(ElementId::kMotorInvDmax, motor));
-  if (e.assigned(ElementId::kMotorInvJmax, motor)) activity.max_jerk_mu_ms3 = limit_of_inverse(e.get(ElementId::kMotorInvJmax, motor));
+  if (limits_jerk) activity.max_jerk_mu_ms3 = limit_of_inverse(e.get(ElementId::kMotorInvJmax, motor));
 }
 
 /// A motor that was faster when the profile began may slow down from there; one that stops has no speed of its own.
@@ -49,7 +55,7 @@ MotorActivity Machine::activity(int motor, double time_ms) const {
     case Motor::Source::kRest: break;
     case Motor::Source::kPath:
       activity.kind = MotorActivity::Kind::kPath;
-      limits_of_path(s.elements, n, activity);
+      limits_of_path(s.elements, n, jerk_is_limited(s, n, static_cast<unsigned>(std::max(m.coord, 0))), activity);
       break;
     case Motor::Source::kProfile:
       activity.kind = MotorActivity::Kind::kOwn;

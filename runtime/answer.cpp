@@ -85,19 +85,10 @@ std::string axes_text(const CoordSystem& c, const AxisVector& values) {
   return text;
 }
 
-/// Axis velocities per Coord[].FeedTime, from the commanded positions around now.
+/// Axis velocities per Coord[].FeedTime.
 AxisVector axis_velocity(Machine::State& s, CoordSystem& c, unsigned number) {
-  const double step_ms = s.period_ms();
-  std::vector<double> before(bytecode::kMaxMotors), after(bytecode::kMaxMotors);
-  for (const Motor& m : s.motors) {
-    const auto n = static_cast<std::size_t>(m.number);
-    before[n] = m.position_at(s.now_ms);
-    after[n] = before[n] + m.velocity_at(s.now_ms) * step_ms;
-  }
-  AxisVector from{}, to{}, velocity{};
-  if (!c.axes_from_motors(before, from) || !c.axes_from_motors(after, to)) return velocity;
-  const double feed_time_ms = s.elements.get(ElementId::kCoordFeedTime, number);
-  for (std::size_t axis = 0; axis < velocity.size(); ++axis) velocity[axis] = (to[axis] - from[axis]) / step_ms * feed_time_ms;
+  AxisVector velocity = c.commanded_velocity_uu_ms(s.now_ms);
+  for (double& value : velocity) value *= s.elements.get(ElementId::kCoordFeedTime, number);
   return velocity;
 }
 

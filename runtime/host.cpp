@@ -248,7 +248,11 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     case ElementId::kCoordErrorStatus:
       s_.elements.assign(a, value);
       if (value == 0) return Flow::kContinue;
-      if (runner.kind == RunnerKind::kKinematics) { runner.aborted = true; return Flow::kStop; }
+      if (runner.kind == RunnerKind::kKinematics && runner.number == static_cast<int>(a.index[0])) {
+        runner.aborted = true;
+        runner.error_status = value;
+        return Flow::kStop;
+      }
       if (s_.coord(static_cast<int>(a.index[0])).program_running()) {
         CoordSystem& c = s_.coord(static_cast<int>(a.index[0]));
         if (&c.runner() == &runner)

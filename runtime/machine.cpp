@@ -217,8 +217,27 @@ std::vector<int> Machine::coords_in_use() const {
 
 std::uint32_t Machine::axes_of(int coord) const { return state_->coord(coord).axes_with_motors(); }
 
-bool Machine::axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu) {
-  return state_->coord(coord).axes_from_motors(motor_mu, axis_uu);
+bool Machine::axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu, std::string* why) {
+  return state_->coord(coord).axes_from_motors(motor_mu, axis_uu, why);
+}
+
+void Machine::set_robot(int coord, std::shared_ptr<const kinematics::Robot> robot, std::vector<double> motor_mu_per_joint) {
+  state_->coord(coord).robot = {std::move(robot), std::move(motor_mu_per_joint)};
+}
+
+bool Machine::has_kinematics(int coord) const { return !kinematic_motors(coord).empty(); }
+
+std::vector<int> Machine::kinematic_motors(int coord) const {
+  std::vector<int> motors;
+  for (const auto& d : state_->coord(coord).map().definitions())
+    if (d.kind == kinematics::MotorDefinition::Kind::kInverse) motors.push_back(d.motor);
+  return motors;
+}
+
+std::optional<std::pair<double, double>> Machine::motor_range_mu(int motor) const {
+  const double low = state_->elements.get(bytecode::ElementId::kMotorMinPos, static_cast<unsigned>(motor));
+  const double high = state_->elements.get(bytecode::ElementId::kMotorMaxPos, static_cast<unsigned>(motor));
+  return high > low ? std::optional(std::pair(low, high)) : std::nullopt;
 }
 
 std::optional<Fault> Machine::motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu) {

@@ -28,6 +28,9 @@
 namespace pmac::motion {
 struct StageObservers;
 }
+namespace pmac::kinematics {
+class Robot;
+}
 
 namespace pmac::runtime {
 
@@ -61,6 +64,10 @@ struct FaultRecord {
   int motor = -1;               // whose fault it is, where it is one motor's
 };
 
+/// With limit_jerk: a place where the path's acceleration steps, as where a line meets an arc. ratio: the jerk that this is at servo rate,
+/// in limits of the motor for which that is most.
+struct JerkJoin { double time_ms = 0; int coord = -1; bytecode::SourceLine source; double ratio = 0; };
+
 /// What the owner wants to hear. Any may be empty.
 struct MachineObservers {
   std::function<void(const std::string&)> answer;            // reports of on-line commands, [send N] lines
@@ -70,12 +77,14 @@ struct MachineObservers {
   std::function<void(const OutputChange&)> output;
   std::function<void(const FaultRecord&)> fault;
   std::function<void(int coord, const motion::MotionCommand&)> motion_command;
+  std::function<void(const JerkJoin&)> jerk_join;
   std::function<void(double time_ms)> progress;               // now and then while running
 };
 
 struct MachineOptions {
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool limit_jerk = false;              // lookahead keeps Motor[].InvJmax as well
   bool note_governing = false;                                // of every move, for reports
   OnlineCompiler compile_online;                              // cmd "...", --at, console
   /// A line of a source file, for list; empty where the owner has no source.
@@ -139,9 +148,18 @@ class Machine {
   /// Axes of a coordinate system that have motors, as a mask; and their positions for motor positions by motor number
   /// (the forward map). False where the forward routine has no solution.
   std::uint32_t axes_of(int coord) const;
-  bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu);
+  bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu, std::string* why = nullptr);
   /// Motor positions of an axis position, into motor_mu by motor number; the fault where there is none.
   std::optional<Fault> motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu);
+  /// A stock robot in place of the kinematic routines of a coordinate system: its motors ->I, ascending, are the joints, each with its
+  /// motor units per mm or degree (one number for all, or one a joint).
+  void set_robot(int coord, std::shared_ptr<const kinematics::Robot> robot, std::vector<double> motor_mu_per_joint);
+  /// The coordinate system has motors ->I.
+  bool has_kinematics(int coord) const;
+  /// Motors ->I of a coordinate system, ascending.
+  std::vector<int> kinematic_motors(int coord) const;
+  /// Motor[].MinPos and MaxPos; nullopt where they are no range.
+  std::optional<std::pair<double, double>> motor_range_mu(int motor) const;
 
   /// What a motor does at a tick of the block that the sinks are being given, and the limits that hold for it.
   MotorActivity activity(int motor, double time_ms) const;

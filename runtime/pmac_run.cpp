@@ -11,12 +11,14 @@
 #include "runtime/machine.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/emit.h"
+#include "runtime/tool/kin_check.h"
 #include "runtime/tool/limit_report.h"
 #include "runtime/tool/load.h"
 #include "runtime/tool/options.h"
 #include "runtime/tool/outputs.h"
 #include "runtime/tool/recorder.h"
 #include "runtime/tool/report.h"
+#include "runtime/tool/robots.h"
 
 namespace {
 
@@ -34,7 +36,8 @@ void catch_signals() {
 bool shows_progress(const RunOptions& options) { return !options.quiet && isatty(STDERR_FILENO) != 0; }
 
 /// Messages of the machine, as they come: faults and refusals on standard error, answers on standard output.
-runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console) {
+runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console,
+                                    runtime::LimitCheck*& excuse) {
   runtime::MachineObservers o;
   const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
   o.answer = [quiet = options.quiet, answers_to_stderr, &console](const std::string& text) {
@@ -51,6 +54,10 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   };
   o.move = [&report](const runtime::MoveRecord& move) { report.add(move); };
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
+  o.jerk_join = [&report, &excuse](const runtime::JerkJoin& join) {
+    report.add(join);
+    if (excuse) excuse->excuse_jerk(join.coord, join.time_ms);
+  };
   o.fault = [&report, &machine](const runtime::FaultRecord& record) {
     report.add(record);
     const std::string who = record.plc >= 0 ? "PLC " + std::to_string(record.plc) : record.coord < 0 ? "motor " + std::to_string(record.motor) : "coordinate system " + std::to_string(record.coord);
@@ -118,9 +125,11 @@ int run(const RunOptions& options) {
   compiler::Session session(compile_options);
   Report report(options.json == JsonDetail::kMoves || options.stats);
   runtime::Machine* place = nullptr;
+  runtime::LimitCheck* excuse = nullptr;
   runtime::MachineOptions machine_options;
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
+  machine_options.limit_jerk = options.limit_jerk;
   machine_options.max_instructions = options.max_instructions;
   machine_options.note_governing = options.stats;
   Console console(options);
@@ -129,7 +138,7 @@ int run(const RunOptions& options) {
     const auto typed = file == Console::kName ? console.typed_line(line) : std::nullopt;
     return typed ? typed : lines(file, line);
   };
-  machine_options.observers = observers(options, report, place, console);
+  machine_options.observers = observers(options, report, place, console, excuse);
   Emitter emitter(options.emit);
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);
@@ -141,11 +150,14 @@ int run(const RunOptions& options) {
   machine.add_sink(&statistics);
   runtime::LimitCheck limit_check([&machine](int motor, double time_ms) { return machine.activity(motor, time_ms); });
   if (options.check_limits) machine.add_sink(&limit_check);
+  excuse = &limit_check;
   machine.add_sink(&recorder);
   emitter.attach(machine, recorder);
 
+  if (const int code = set_robots(options, machine); code != kExitOk) return code;
   if (const int code = load_files(options, session, machine); code != kExitOk) return code;
   for (const std::string& text : options.commands) machine.command(text, "-e");
+  if (options.kin_check.enabled) return check_kinematics(options, machine);
   for (const auto& [time_s, text] : options.timed_commands) machine.at(time_s * 1000.0, text);
 
   catch_signals();
@@ -184,6 +196,7 @@ int main(int argc, char** argv) {
   try {
     RunOptions options;
     if (const auto code = parse_options(argc, argv, options)) return *code;
+    if (options.robots.size() == 1 && options.robots[0] == "list") return list_robots();
     if (const std::string file = unknown_ending(options); !file.empty()) {
       std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
       return kExitUsage;

@@ -13,6 +13,8 @@ struct Runner {
   int number;       // coordinate system or PLC; 0 for the command line
   Thread thread;
   bool aborted = false;   // a kinematic routine asked for an abort, or wrote ErrorStatus
+  double error_status = 0;  // that it wrote
+  bool for_query = false;   // a kinematic routine answers a query: Ldata.Status is 0
   static Runner& of(Thread& thread) { return *static_cast<Runner*>(thread.context); }
 };
 

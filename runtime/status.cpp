@@ -134,7 +134,7 @@ double read_element_value(Machine::State& s, Runner& runner, const ElementAddres
     case ElementId::kLdataMotor: return runner.thread.motor;
     case ElementId::kLdataGoBack: return runner.thread.go_back;
     case ElementId::kLdataCmdStatus: return runner.thread.command_status;
-    case ElementId::kLdataStatus: return runner.kind == RunnerKind::kKinematics ? 0x40 : 0;
+    case ElementId::kLdataStatus: return runner.kind == RunnerKind::kKinematics && !runner.for_query ? 0x40 : 0;
     case ElementId::kGatherEnable: return s.gather.enable();
     case ElementId::kCoordLHSize: return s.coord(static_cast<int>(a.index[0])).lookahead_buffer;
     case ElementId::kGatherSamples: return static_cast<double>(s.gather.samples());

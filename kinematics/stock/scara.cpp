@@ -5,10 +5,13 @@
 //    elbow o                  q  = angle at the shoulder between upper arm and r (law of cosines)
 //         / L1
 //        o shoulder
+//
+// Source: J. J. Craig, Introduction to Robotics, section 4.4; User's Manual p515-519. As a stock robot with the settings
+// upper_arm_mm 400, forearm_mm 300, vertical_mm 250 (Z at joint 0), elbow 1 (sign of the elbow angle).
 #include <cmath>
 #include <numbers>
 
-#include "kinematics/kinematics.h"
+#include "kinematics/stock/makers.h"
 
 namespace pmac::kinematics {
 namespace {
@@ -40,4 +43,43 @@ std::optional<ScaraJoints> scara_inverse(const ScaraGeometry& g, const ScaraPose
   return j;
 }
 
+namespace stock {
+namespace {
+
+class Scara : public Robot {
+ public:
+  explicit Scara(RobotSettings& s)
+      : geometry_{s.length("upper_arm_mm", 400), s.length("forearm_mm", 300), s.number("vertical_mm", 250)},
+        arm_(s.side("elbow", 1) > 0 ? ScaraArm::kElbowPositive : ScaraArm::kElbowNegative) {}
+  int joint_count() const override { return 4; }
+  std::uint32_t axes() const override { return axis::bit(axis::kX) | axis::bit(axis::kY) | axis::bit(axis::kZ) | axis::bit(axis::kC); }
+
+  std::string forward(std::span<const double> joint, AxisVector& axis_uu) const override {
+    const ScaraPose pose = scara_forward(geometry_, {joint[0], joint[1], joint[2], joint[3]});
+    axis_uu[axis::kX] = pose.x_mm;
+    axis_uu[axis::kY] = pose.y_mm;
+    axis_uu[axis::kZ] = pose.z_mm;
+    axis_uu[axis::kC] = pose.c_deg;
+    return {};
+  }
+  std::string inverse(const AxisVector& axis_uu, std::span<const double>, std::span<double> joint) const override {
+    const auto joints = scara_inverse(geometry_, {axis_uu[axis::kX], axis_uu[axis::kY], axis_uu[axis::kZ], axis_uu[axis::kC]}, arm_);
+    if (!joints) return "the target is out of the arm's reach";
+    joint[0] = joints->shoulder_deg;
+    joint[1] = joints->elbow_deg;
+    joint[2] = joints->wrist_deg;
+    joint[3] = joints->vertical_mm;
+    return {};
+  }
+
+ private:
+  ScaraGeometry geometry_;
+  ScaraArm arm_;
+};
+
+}  // namespace
+
+std::unique_ptr<Robot> make_scara(RobotSettings& settings) { return std::make_unique<Scara>(settings); }
+
+}  // namespace stock
 }  // namespace pmac::kinematics

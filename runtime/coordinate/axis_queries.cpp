@@ -33,7 +33,7 @@ AxisVector axis_values(Machine::State& s, CoordSystem& coord, int number, Contro
 
 std::string read_axes(Machine::State& s, int number, ControlVerb verb, double wanted_axes, Thread& thread) {
   CoordSystem& coord = s.coord(number);
-  if (!coord.map().solvable() && !coord.forward) return fmt::format("error #39: NOT READY TO RUN: coordinate system {}: {}", number, coord.map().reason());
+  if (!coord.map().solvable() && !coord.has_forward()) return fmt::format("error #39: NOT READY TO RUN: coordinate system {}: {}", number, coord.map().reason());
   const AxisVector values = axis_values(s, coord, number, verb);
   const bool all = !(wanted_axes >= 0 && wanted_axes <= 4294967295.0);
   const std::uint32_t mask = coord.axes_with_motors() & (all ? 0xffffffffu : static_cast<std::uint32_t>(wanted_axes));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/motion/segment.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -20,6 +21,7 @@ CoordSystem::CoordSystem(Machine::State& machine, int number)
       kinematics_(RunnerKind::kKinematics, number, machine.p.data(), q.data()) {
   runner_.thread.coord = kinematics_.thread.coord = number;
   runner_.thread.own_coord = kinematics_.thread.own_coord = number;
+  observe({});
 }
 
 CoordSystem::~CoordSystem() = default;
@@ -75,7 +77,9 @@ void CoordSystem::fail(double time_ms, Fault fault) {
 
 void CoordSystem::fail_at_once(double time_ms, Fault fault) {
   abort(time_ms);
-  machine_.elements.set(ElementId::kCoordErrorStatus, error_status(fault.kind), static_cast<unsigned>(number_));
+  const bool of_routine = fault.kind == FaultKind::kInverseKinematics && kinematics_.error_status != 0;
+  const double status = of_routine ? kinematics_.error_status : error_status(fault.kind);
+  machine_.elements.set(ElementId::kCoordErrorStatus, status, static_cast<unsigned>(number_));
   machine_.report_fault({time_ms, number_, -1, std::move(fault)});
 }
 
@@ -85,7 +89,14 @@ bool CoordSystem::executes(const bytecode::Program* program) const {
 
 void CoordSystem::observe(motion::StageObservers observers) {
   observers_ = std::move(observers);
-  pipeline_.observe(observers_);
+  motion::StageObservers all = observers_;
+  if (machine_.options.limit_jerk && machine_.options.observers.jerk_join)
+    all.timed_segment = [this](const motion::TimedSegment& segment) {
+      if (observers_.timed_segment) observers_.timed_segment(segment);
+      if (segment.jerk_step > 0)
+        machine_.options.observers.jerk_join({time_base_.time_at(segment.start_ms), number_, segment.segment.source, segment.jerk_step});
+    };
+  pipeline_.observe(std::move(all));
 }
 
 }  // namespace pmac::runtime

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "kinematics/kinematics.h"
+#include "kinematics/robot.h"
 #include "compiler/bytecode/control.h"
 #include "runtime/coordinate/modal.h"
 #include "runtime/coordinate/time_base.h"
@@ -51,6 +52,12 @@ struct RapidMove {
 /// pmatch, pset (axis and value), pclr, pstore or pload.
 struct PositionChange { bytecode::ControlVerb verb; int axis = 0; double value = 0; };
 
+/// A stock robot that stands in for the kinematic routines: motors ->I, ascending, are its joints.
+struct StockRobot {
+  std::shared_ptr<const kinematics::Robot> robot;
+  std::vector<double> motor_mu_per_joint;  // [joint], or one for all
+};
+
 class CoordSystem {
  public:
   CoordSystem(Machine::State& machine, int number);
@@ -62,6 +69,7 @@ class CoordSystem {
   const kinematics::AxisMap& map() const { return map_; }
   const std::vector<int>& motors() const { return motors_; }
   ProgramHandle forward, inverse;
+  StockRobot robot;            // in place of forward and inverse, where there is one
   int lookahead_buffer = 0;    // segments of define lookahead
   ModalState modal;
   std::vector<double> q;
@@ -151,9 +159,14 @@ class CoordSystem {
   std::string match_positions(double time_ms);
   /// pmatch, pset, pclr, pstore, pload while no program runs. Answers a refusal or empty.
   std::string change_positions(double time_ms, const PositionChange& change);
-  bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu);
-  /// Positions of served_motors(), through the inverse routine where there is one.
-  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source);
+  /// For a query: axes of which the forward routine answers nan are nan. Where it has no solution all its axes are, and why says it.
+  bool axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu, std::string* why = nullptr);
+  /// Positions of served_motors(), through the inverse routine where there is one. rates: with the axes' velocities for the motors'
+  /// (KinVelEna), for pvt moves without segmentation.
+  std::optional<Fault> motors_from_axes(const AxisVector& axis_uu, double* motor_mu, bytecode::SourceLine source,
+                                        const motion::RoutineRates* rates = nullptr);
+  /// There is a forward routine, or a robot.
+  bool has_forward() const { return forward || robot.robot; }
   std::vector<int> served_motors() { return motor_map().motors; }
   std::uint32_t axes_with_motors() const { return map_.linear_axes() | forward_axes_; }
   /// Program coordinates: end of the last calculated move, and where the motors are commanded to be now.
@@ -162,7 +175,8 @@ class CoordSystem {
   /// Where the motors are, and how far from where they are commanded to be.
   AxisVector actual_position(double time_ms);
   AxisVector following_error_uu(double time_ms);
-  /// In axis units per ms, from the motors' velocities; through the forward routine as a difference over one servo cycle.
+  /// In axis units per ms, from the motors' velocities; through a forward routine that sets no KinVelAxis as a difference over one
+  /// servo cycle.
   AxisVector commanded_velocity_uu_ms(double time_ms);
   void observe(motion::StageObservers observers);
   const motion::StageObservers& observers() const { return observers_; }
@@ -268,8 +282,21 @@ class CoordSystem {
 
   // positions.cpp
   AxisVector axes_at(double time_ms, bool actual);
-  std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source);
-  std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu);
+  std::string why_no_kinematics() const;
+  std::optional<AxisVector> routine_velocity_uu_ms(double time_ms);
+
+  // kinematic_routines.cpp
+  enum class Caller { kProgram, kQuery };
+  std::optional<Fault> solve_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, bytecode::SourceLine source,
+                                     const motion::RoutineRates* rates, std::span<double> rate_mu);
+  std::string inverse_routine(const AxisVector& axis_uu, std::span<double> motor_mu, const AxisVector* rate_uu, std::span<double> rate_mu);
+  std::string robot_inverse(const AxisVector& axis_uu, std::span<double> motor_mu, const AxisVector* rate_uu, std::span<double> rate_mu);
+  std::string solve_forward(std::span<const double> motor_mu, AxisVector& axis_uu, Caller caller);
+  std::string forward_routine(std::span<const double> motor_mu, AxisVector& axis_uu, Caller caller);
+  std::string robot_forward(std::span<const double> motor_mu, AxisVector& axis_uu, Caller caller);
+  bool forward_rates(std::span<const double> motor_mu, std::span<const double> motor_mu_ms, AxisVector& velocity_uu_ms);
+  std::string run_routine(Caller caller);
+  std::string robot_does_not_fit() const;
 
   Machine::State& machine_;
   int number_;
@@ -277,6 +304,7 @@ class CoordSystem {
   kinematics::AxisMap map_;
   std::vector<int> motors_;
   std::uint32_t forward_axes_ = 0;
+  std::vector<double> near_joint_;        // of robot: the last ones on the path, which say its branch
   Runner runner_, kinematics_;
   ProgramHandle pointed_;
   std::int64_t pointed_label_ = -1;

@@ -66,7 +66,7 @@ bool is_pvt(MoveMode mode) { return mode == MoveMode::kPvt || mode == MoveMode::
 /// Velocities are those at the end; an axis without one stops there.
 void fill_pvt(const ModalState& modal, const OpenBlock& block, motion::MotionCommand& command) {
   command.feed_uu = 0;
-  command.move_time_ms = modal.mode == MoveMode::kPvt ? modal.pvt_time_ms : modal.spline_time_ms[0];
+  command.move_time_ms = modal.mode == MoveMode::kPvt ? modal.pvt_time_ms : modal.spline_time_ms[1];
   for (std::size_t axis = 0; axis < block.velocity.size(); ++axis)
     if (block.velocity_axes >> axis & 1u) command.end_velocity_uu_ms[axis] = block.velocity[axis] / command.feed_time_ms;
 }
@@ -126,8 +126,6 @@ std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block
   for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
     if (block.trigger_axes >> axis & 1u && !std::isfinite(block.trigger[axis]))
       return Fault{FaultKind::kBadTarget, source, fmt::format("the distance of axis {} from its trigger is not a finite number", bytecode::axis_name(axis))};
-  if (modal.mode == MoveMode::kSpline && (modal.spline_time_ms[0] != modal.spline_time_ms[1] || modal.spline_time_ms[0] != modal.spline_time_ms[2]))
-    return Fault{FaultKind::kNotSimulated, source, "a spline of three different times is not simulated; give one, and another where it changes"};
   if (!is_circle(modal.mode) && (block.center_words != 0 || block.has_radius))
     return Fault{FaultKind::kMoveType, source, "centre or radius words outside circle mode; program circle1 or circle2 before"};
   if (block.velocity_axes != 0 && modal.mode != MoveMode::kPvt)

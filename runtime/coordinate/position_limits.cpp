@@ -47,6 +47,8 @@ std::optional<Fault> CoordSystem::limit_target(int motor, double& target_mu, byt
 std::optional<Fault> CoordSystem::check_targets(const AxisVector& target_uu, bytecode::SourceLine source) {
   const bool held = machine_.elements.get(ElementId::kCoordSoftLimitStopDis, static_cast<unsigned>(number_)) != 0;
   if (lookahead_ || held || !has_position_limits()) return std::nullopt;
+  const bool segmented = machine_.elements.get(ElementId::kCoordSegMoveTime, static_cast<unsigned>(number_)) > 0;
+  if (segmented && map_.has_inverse_motors()) return std::nullopt;  // routines are called along the path, not ahead of it
   std::vector<double> target_mu(path_map_.motors.size());
   if (auto fault = motors_from_axes(target_uu, target_mu.data(), source)) return fault;
   for (std::size_t i = 0; i < target_mu.size(); ++i)

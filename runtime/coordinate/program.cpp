@@ -46,6 +46,7 @@ motion::PipelineConfig CoordSystem::config() {
   c.servo_period_ms = machine_.period_ms();
   c.fine = machine_.options.fine;
   c.ramp_rule = machine_.options.ramp_rule;
+  c.limit_jerk = machine_.options.limit_jerk;
   c.note_governing = machine_.options.note_governing;
   c.lookahead_segments = static_cast<int>(e.get(ElementId::kCoordLHDistance, cs));
   c.lookahead = c.segment_time_ms > 0 && c.lookahead_segments > 1 && lookahead_buffer > 0;

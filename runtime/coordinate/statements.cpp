@@ -175,8 +175,9 @@ std::optional<Fault> CoordSystem::add_to_spline(const motion::MotionCommand& com
   if (auto fault = pvt_has_ended(command.source)) return fault;
   if (command.compensation_side != 0 || compensation_.active())
     return Fault{FaultKind::kCcMoveType, command.source, "spline moves are not allowed while cutter compensation is on"};
+  if (const std::string why = spline_.misfit(modal.spline_time_ms); !why.empty()) return Fault{FaultKind::kPvt, command.source, why};
   spline_moves_.clear();
-  spline_.add(command, start_uu, spline_moves_);
+  spline_.add(command, modal.spline_time_ms, start_uu, spline_moves_);
   return add_spline_moves();
 }
 

@@ -108,6 +108,13 @@ std::vector<double> motor_change(const Move& previous, const Move& next) {
   return change;
 }
 
+/// Longest blend into a move that leaves time for the one out of it. Times for ta and td make a block long enough for both; rates do
+/// not know the speeds of its neighbours, so that each blend gets half of the room there is.
+double room_in(const Move& next) {
+  const double room = 2 * next.time_ms - next.stop_ramp.total_ms();
+  return next.entry.ta < 0 ? std::min(room, next.time_ms) : room;
+}
+
 }  // namespace
 
 Join decide_join(const Move& previous, const Move& next, double entry_total_ms, const PipelineConfig& config) {
@@ -127,7 +134,7 @@ Join decide_join(const Move& previous, const Move& next, double entry_total_ms, 
     ramp = corner_ramp(ramp, corner, next, axes, config);
     if (is_too_short(ramp, ramp_within_limits({0, 0}, speed_change(corner, axes), motor_change(previous, next), false, config))) return {};
   }
-  const double room = std::min(2 * previous.time_ms - entry_total_ms, 2 * next.time_ms - next.stop_ramp.total_ms());
+  const double room = std::min(2 * previous.time_ms - entry_total_ms, room_in(next));
   Join join{kind, ramp, corner.speed_before, corner.speed_after, 0};
   if (config.segment_time_ms > 0) {
     if (ramp.total_ms() > room) join.ramp = scaled_to(ramp, std::max(0.0, room));

@@ -21,6 +21,40 @@ Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
   return part;
 }
 
+/// The limits may act in the segment: its own acceleration at full rate is not far from them, or a speed beyond. Elsewhere x is 1, or changes
+/// as on a straight line.
+bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
+  constexpr double kFar = 0.1;
+  const double h = segment.duration_ms;
+  for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
+    const MotorCubic& q = segment.motor[m];
+    const double accel = std::max(std::abs(q.acceleration(0)), std::abs(q.acceleration(h))), speed = limits[m].max_speed_mu_ms;
+    if (accel * limits[m].inv_amax_ms2_mu > kFar * accel_share) return true;
+    if (speed > 0 && std::max({std::abs(q.c1), std::abs(q.velocity(h / 2)), std::abs(q.velocity(h))}) > speed) return true;
+  }
+  return false;
+}
+
+/// How much velocities change over the part, in speeds of the fastest motor.
+double change_of_velocity(const Segment& segment, double from_ms, double to_ms) {
+  double change = 0, speed = 0;
+  for (const MotorCubic& q : segment.motor) {
+    const double begin = q.velocity(from_ms), middle = q.velocity((from_ms + to_ms) / 2), end = q.velocity(to_ms);
+    change = std::max(change, std::max({begin, middle, end}) - std::min({begin, middle, end}));
+    speed = std::max({speed, std::abs(begin), std::abs(middle), std::abs(end)});
+  }
+  return speed > 0 ? change / speed : 0;
+}
+
+/// Ends of the parts that a stretch of the segment is halved into until velocities change little over each.
+void divide(const Segment& segment, double from_ms, double to_ms, int halvings, std::vector<double>& ends_ms) {
+  constexpr double kChange = 0.03;
+  if (halvings == 0 || change_of_velocity(segment, from_ms, to_ms) <= kChange) return ends_ms.push_back(to_ms);
+  const double middle_ms = (from_ms + to_ms) / 2;
+  divide(segment, from_ms, middle_ms, halvings - 1, ends_ms);
+  divide(segment, middle_ms, to_ms, halvings - 1, ends_ms);
+}
+
 /// The segment run through with x from x0 to x1; one of them is not zero.
 TimedSegment timed(Segment segment, double x0, double x1) {
   const double rate0 = std::sqrt(x0), rate1 = std::sqrt(x1);
@@ -64,7 +98,28 @@ void Lookahead::finish(std::vector<TimedSegment>& out) {
   at_start_ = true;
 }
 
+/// In parts, where the velocity of the program changes much: x is linear over each.
 void Lookahead::append(PreparedSegment prepared) {
+  constexpr int kHalvings = 6;
+  if (!may_be_limited(prepared.segment, limits_, prepared.accel_share)) return append_part(std::move(prepared));
+  part_ends_ms_.clear();
+  divide(prepared.segment, 0, prepared.segment.duration_ms, kHalvings, part_ends_ms_);
+  if (part_ends_ms_.size() == 1) return append_part(std::move(prepared));
+  double from_ms = 0;
+  for (const double to_ms : part_ends_ms_) {
+    PreparedSegment part{part_of(prepared.segment, from_ms, to_ms - from_ms)};
+    part.accel_share = prepared.accel_share;
+    if (from_ms == 0) {
+      part.stops_at_start = prepared.stops_at_start;
+      part.speed_ratio = prepared.speed_ratio;
+      part.max_start_rate = prepared.max_start_rate;
+    }
+    append_part(std::move(part));
+    from_ms = to_ms;
+  }
+}
+
+void Lookahead::append_part(PreparedSegment prepared) {
   Interval next{std::move(prepared.segment), prepared.accel_share, {}, prepared.speed_ratio * prepared.speed_ratio};
   next.limits = rate_limits(next.segment, limits_, next.accel_share);
   next.start_bound = std::min(next.limits.max_rate2, prepared.max_start_rate * prepared.max_start_rate);
@@ -117,7 +172,7 @@ void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   const double ratio2 = intervals_.empty() ? 1 : intervals_.front().speed_ratio2;
   const double next_beta = intervals_.empty() ? end_beta : intervals_.front().beta * ratio2;
   const double next = interval.limits.largest_end(rate2_, std::min(next_beta, interval.limits.max_rate2));
-  const bool meets_beta = next == next_beta && rate2_ < interval.beta;
+  const bool meets_beta = next == next_beta && (rate2_ < interval.beta || interval.beta == interval.start_bound);
   const bool worthwhile = meets_beta && interval.limits.largest_end(rate2_, interval.limits.max_rate2) > kWorthwhileRise * next;
   const bool done = worthwhile && emit_with_switch(interval, rate2_, next, out);
   if (!done) out.push_back(timed(std::move(interval.segment), rate2_, next));

@@ -18,26 +18,23 @@
 #include <vector>
 
 #include "runtime/motion/rate_limits.h"
+#include "runtime/motion/time_law.h"
 #include "runtime/motion/velocity_steps.h"
 
 namespace pmac::motion {
 
-class Lookahead {
+class Lookahead : public TimeLaw {
  public:
   /// limits: [motor]. window_ms: programmed time that is always known beyond what is committed (LHDistance * SegMoveTime; in
   /// time, because nodes at corners and in arcs make some segments shorter).
   Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms);
 
-  /// The next segment; appends those that are now committed. Amortised constant cost.
-  void add(Segment segment, std::vector<TimedSegment>& out);
-  /// The path ends here: commits everything. The next segment begins a new path.
-  void finish(std::vector<TimedSegment>& out);
+  void add(Segment segment, std::vector<TimedSegment>& out) override;
+  void finish(std::vector<TimedSegment>& out) override;
 
-  /// Programmed time that is planned but not yet committed.
-  double planned_ms() const { return known_ms_; }
-  /// So much of it before anything is committed.
-  double needed_ms() const { return window_ms_ + chunk_ms_; }
-  double window_ms() const { return window_ms_; }
+  double planned_ms() const override { return known_ms_; }
+  double needed_ms() const override { return window_ms_ + chunk_ms_; }
+  double window_ms() const override { return window_ms_; }
 
  private:
   struct Interval {
@@ -50,6 +47,7 @@ class Lookahead {
   };
   int known() const { return static_cast<int>(intervals_.size()); }
   void append(PreparedSegment prepared);
+  void append_part(PreparedSegment prepared);
   void push(Interval interval);
   void split_last();
   void backward(double end_beta);
@@ -60,6 +58,7 @@ class Lookahead {
   double window_ms_, chunk_ms_;
   VelocitySteps steps_;
   std::vector<PreparedSegment> prepared_;
+  std::vector<double> part_ends_ms_;
   std::deque<Interval> intervals_;
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass

@@ -7,7 +7,8 @@
 
 namespace pmac::motion {
 
-MotorKinematics::MotorKinematics(const MotorMap& map) : count_(map.motors.size()), offset_mu_(map.offset_mu), inverse_(map.inverse) {
+MotorKinematics::MotorKinematics(const MotorMap& map)
+    : count_(map.motors.size()), offset_mu_(map.offset_mu), inverse_(map.inverse), inverse_rates_(map.inverse_rates) {
   offset_mu_.resize(count_, 0.0);
   if (inverse_) return;
   for (std::size_t motor = 0; motor < count_; ++motor)
@@ -32,6 +33,18 @@ std::optional<runtime::Fault> MotorKinematics::position(const AxisVector& axis_u
 void MotorKinematics::rate(const AxisVector& axis_rate, double* motor_rate) const {
   std::fill(motor_rate, motor_rate + count_, 0.0);
   for (const Term& term : terms_) motor_rate[term.motor] += term.coefficient * axis_rate[term.axis];
+}
+
+std::optional<runtime::Fault> MotorKinematics::rate_at(const AxisVector& axis_uu, const AxisVector& axis_rate_uu_ms, double* motor_rate_mu_ms,
+                                                       SourceLine source) const {
+  if (!inverse_) {
+    rate(axis_rate_uu_ms, motor_rate_mu_ms);
+    return std::nullopt;
+  }
+  if (!inverse_rates_)
+    return runtime::Fault{runtime::FaultKind::kInverseKinematics, source, "the inverse kinematics gives no velocities; set Coord[].SegMoveTime"};
+  std::vector<double> position_mu(count_);
+  return inverse_rates_(axis_uu, {axis_rate_uu_ms, motor_rate_mu_ms}, position_mu.data(), source);
 }
 
 }  // namespace pmac::motion

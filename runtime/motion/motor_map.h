@@ -22,12 +22,16 @@ class MotorKinematics {
   /// Linear maps only: motor velocities (or any derivative) of axis velocities.
   void rate(const AxisVector& axis_rate, double* motor_rate) const;
 
+  /// Motor velocities of axis velocities at a position, through the routine where there is one. motor_rate_mu_ms: [count()]
+  std::optional<runtime::Fault> rate_at(const AxisVector& axis_uu, const AxisVector& axis_rate_uu_ms, double* motor_rate_mu_ms, SourceLine source) const;
+
  private:
   struct Term { std::size_t motor, axis; double coefficient; };
   std::size_t count_ = 0;
   std::vector<Term> terms_;          // non-zero coefficients, by motor
   std::vector<double> offset_mu_;
   std::function<std::optional<runtime::Fault>(const AxisVector&, double*, SourceLine)> inverse_;
+  std::function<std::optional<runtime::Fault>(const AxisVector&, const RoutineRates&, double*, SourceLine)> inverse_rates_;
 };
 
 }  // namespace pmac::motion

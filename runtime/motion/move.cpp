@@ -170,16 +170,17 @@ void take_words(Move& move, const MotionCommand& command) {
   move.second_set = command.second_set;
 }
 
-/// Unsegmented: the motors' own cubics, which the linear map makes of those of the axes.
-std::optional<Fault> map_rates(Curve& curve, SourceLine source, const MoveContext& context) {
+/// Unsegmented: the motors' own cubics, with the velocities that the linear map or the kinematic routine makes of those of the axes.
+std::optional<Fault> map_rates(Curve& curve, const MotionCommand& command, const MoveContext& context) {
   if (context.config.segment_time_ms > 0) return std::nullopt;
-  if (!context.kinematics.is_linear())
-    return Fault{FaultKind::kNotSimulated, source, "pvt and spline moves through inverse kinematics need segmentation; set Coord[].SegMoveTime"};
-  curve.motor_start_rate_mu.resize(context.kinematics.count());
-  curve.motor_end_rate_mu.resize(context.kinematics.count());
-  context.kinematics.rate(curve.rates->start, curve.motor_start_rate_mu.data());
-  context.kinematics.rate(curve.rates->end, curve.motor_end_rate_mu.data());
-  return std::nullopt;
+  const auto map = [&](const AxisVector& at, const AxisVector& velocity_uu_ms, std::vector<double>& rate_mu) {
+    rate_mu.resize(context.kinematics.count());
+    auto fault = context.kinematics.rate_at(at, velocity_uu_ms, rate_mu.data(), command.source);
+    for (double& rate : rate_mu) rate *= command.move_time_ms;
+    return fault;
+  };
+  if (auto fault = map(curve.start, command.start_velocity_uu_ms, curve.motor_start_rate_mu)) return fault;
+  return map(curve.end, command.end_velocity_uu_ms, curve.motor_end_rate_mu);
 }
 
 Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
@@ -193,7 +194,7 @@ Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start
   }
   Curve curve = pvt_curve(start, end_point(command, start), rates);
   if (auto fault = map_ends(curve, start_motor_mu, command.source, context)) return *fault;
-  if (auto fault = map_rates(curve, command.source, context)) return *fault;
+  if (auto fault = map_rates(curve, command, context)) return *fault;
   Move move;
   take_words(move, command);
   move.entry = move.exit = {0, 0};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/motion/governing.h"
+#include "runtime/motion/jerk_lookahead.h"
 #include "runtime/motion/lookahead.h"
 #include "runtime/motion/planner.h"
 #include "runtime/motion/position_limits.h"
@@ -63,7 +64,7 @@ struct Pipeline::State {
   MotorKinematics kinematics;
   Planner planner;
   std::optional<Segmenter> segmenter;   // segmented only
-  std::optional<Lookahead> lookahead;
+  std::unique_ptr<TimeLaw> lookahead;   // where it is on
   Timeline timeline;
   Timings timings;
   Governing governing;                  // where note_governing asks for it
@@ -95,7 +96,8 @@ void Pipeline::State::build_stages() {
   if (segmented()) segmenter.emplace(config, kinematics);
   if (segmented() && config.lookahead) {
     const double window_ms = config.lookahead_segments * config.segment_time_ms;
-    lookahead.emplace(config.limits, window_ms, config.servo_period_ms);
+    if (config.limit_jerk) lookahead = std::make_unique<JerkLookahead>(config.limits, window_ms, config.servo_period_ms);
+    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms);
   }
 }
 
@@ -282,7 +284,11 @@ void Pipeline::take_timings(std::vector<MoveTiming>& out) {
   const std::size_t first = out.size();
   state_->timings.take(out);
   if (!state_->config.note_governing) return;
-  for (std::size_t i = first; i < out.size(); ++i) out[i].governed = state_->governing.take(out[i].id);
+  for (std::size_t i = first; i < out.size(); ++i) {
+    const bool has_own_time = out[i].rule == TimeRule::kOwnTime && !state_->lookahead;  // pvt: no limit acts
+    out[i].governed = state_->governing.take(out[i].id);
+    if (has_own_time) out[i].governed.clear();
+  }
 }
 void Pipeline::take_sync_times(std::vector<SyncTime>& out) { state_->timings.take_sync_times(out); }
 

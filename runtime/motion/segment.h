@@ -37,6 +37,7 @@ struct TimedSegment {
   double duration_ms = 0;
   double rate = 1;                  // at the start
   double rate_slope = 0;            // 1/ms
+  double jerk_step = 0;             // --limit-jerk: the jerk that a step of acceleration at the start makes at servo rate, in limits; 0: none
   double programmed_ms(double t) const { return t * (rate + t * rate_slope / 2); }
 };
 

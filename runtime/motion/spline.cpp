@@ -1,5 +1,7 @@
 #include "runtime/motion/spline.h"
 
+#include <fmt/format.h>
+
 #include "runtime/motion/axis_vector.h"
 
 namespace pmac::motion {
@@ -21,13 +23,24 @@ State state_at(const AxisVector& before, const AxisVector& at, const AxisVector&
 
 }  // namespace
 
-void Spline::add(const MotionCommand& command, const AxisVector& start_uu, std::vector<MotionCommand>& out) {
+std::string Spline::misfit(const SplineTimes& times_ms) const {
+  const auto is_single = [](const SplineTimes& t) { return t[0] == t[1] && t[1] == t[2]; };
+  if (knots_.empty()) return {};
+  if (!is_single(times_ms) && times_ms[0] != times_ms_[1])
+    return fmt::format("the first of three spline times is that of the segment before, which takes {:g} ms, not {:g}", times_ms_[1], times_ms[0]);
+  if (!is_single(times_ms_) && times_ms_[2] != times_ms[1])
+    return fmt::format("the block before says with its third spline time that this segment takes {:g} ms, not {:g}", times_ms_[2], times_ms[1]);
+  return {};
+}
+
+void Spline::add(const MotionCommand& command, const SplineTimes& times_ms, const AxisVector& start_uu, std::vector<MotionCommand>& out) {
   axes_ |= command.axes;
   if (knots_.empty())
-    for (int i = 0; i < 4; ++i) push(start_uu, command, out);
+    for (int i = 0; i < 4; ++i) push(start_uu, times_ms[0], command, out);
+  times_ms_ = times_ms;
   MotionCommand to_point = command;
   to_point.id = command.id + 1;
-  push(command.target_uu, to_point, out);
+  push(command.target_uu, times_ms[1], to_point, out);
 }
 
 void Spline::finish(std::vector<MotionCommand>& out) {
@@ -35,19 +48,21 @@ void Spline::finish(std::vector<MotionCommand>& out) {
   MotionCommand rest = knots_.back().command;
   rest.id += 1;
   const AxisVector end = knots_.back().point;
-  for (int i = 0; i < 3; ++i) push(end, rest, out);
+  const double after_ms = times_ms_[2];
+  for (int i = 0; i < 3; ++i) push(end, after_ms, rest, out);
   cancel();
 }
 
 /// With knots 0 .. 5 the segment from 2 to 3 is known: its ends need the times of one segment more on either side.
-void Spline::push(const AxisVector& point, const MotionCommand& command, std::vector<MotionCommand>& out) {
-  knots_.push_back({point, command.move_time_ms, command});
+void Spline::push(const AxisVector& point, double time_ms, const MotionCommand& command, std::vector<MotionCommand>& out) {
+  knots_.push_back({point, time_ms, command});
   if (knots_.size() < 6) return;
   const auto& k = knots_;
   const State from = state_at(k[1].point, k[2].point, k[3].point, k[1].time_ms, k[2].time_ms, k[3].time_ms, k[4].time_ms);
   const State to = state_at(k[2].point, k[3].point, k[4].point, k[2].time_ms, k[3].time_ms, k[4].time_ms, k[5].time_ms);
   MotionCommand segment = k[3].command;
   segment.kind = CommandKind::kPvt;
+  segment.move_time_ms = k[3].time_ms;
   segment.axes = axes_;
   segment.target_uu = to.position;
   segment.start_velocity_uu_ms = from.velocity;

@@ -16,6 +16,11 @@ double time_at(const TimedSegment& segment, double d) {
   return rates > 0 ? 2 * d / rates : 0;
 }
 
+/// Places that differ by less are the same: little also where programmed time hardly runs.
+double same_place_ms(const TimedSegment& segment) {
+  return kSamePlace_ms * std::min(1.0, segment.segment.duration_ms / segment.duration_ms);
+}
+
 }  // namespace
 
 void Timings::reset(bool sync_on_segments) {
@@ -61,10 +66,10 @@ void Timings::cover_now(Place& place) const {
 
 void Timings::cover_place(Place& place, const TimedSegment& segment, bool round_up) const {
   const double end_ms = segment.segment.start_ms + segment.segment.duration_ms;
-  if (!place.given || place.known || place.programmed_ms > end_ms + kSamePlace_ms) return;
+  if (!place.given || place.known || place.programmed_ms > end_ms + same_place_ms(segment)) return;
   place.known = true;
   const double d = std::clamp(place.programmed_ms - segment.segment.start_ms, 0.0, segment.segment.duration_ms);
-  const bool at_end = round_up || d >= segment.segment.duration_ms - kSamePlace_ms;
+  const bool at_end = round_up || d >= segment.segment.duration_ms - same_place_ms(segment);
   place.time_ms = segment.start_ms + (at_end ? segment.duration_ms : time_at(segment, d));
 }
 

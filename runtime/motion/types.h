@@ -68,6 +68,9 @@ struct MotorLimits {
 enum class FineInterpolation : std::uint8_t { kThrough, kBspline };
 enum class RampRule : std::uint8_t { kPower, kTurbo };
 
+/// Velocities through a kinematic routine. axis_uu_ms in, motor_mu_ms ([motor]) out.
+struct RoutineRates { const AxisVector& axis_uu_ms; double* motor_mu_ms; };
+
 /// Motor positions of an axis position. Either a linear map, or a routine called once a segment.
 struct MotorMap {
   /// Motor numbers served, in the order of every per-motor array.
@@ -77,6 +80,8 @@ struct MotorMap {
   std::vector<double> offset_mu;
   /// Kinematic routine: axis_uu[kAxisCount] -> motor_mu[motors.size()]. Returns the reason where it has no solution.
   std::function<std::optional<runtime::Fault>(const AxisVector& axis_uu, double* motor_mu, SourceLine source)> inverse;
+  /// The same with velocities; where inverse is set.
+  std::function<std::optional<runtime::Fault>(const AxisVector& axis_uu, const RoutineRates& rates, double* motor_mu, SourceLine source)> inverse_rates;
 };
 
 /// Set-up of one coordinate system's pipeline, constant while a sequence runs.
@@ -85,6 +90,7 @@ struct PipelineConfig {
   FineInterpolation fine = FineInterpolation::kThrough;
   RampRule ramp_rule = RampRule::kPower;
   bool lookahead = false;               // segmented only
+  bool limit_jerk = false;              // lookahead keeps InvJmax as well
   int lookahead_segments = 0;           // LHDistance
   double history_ms = 0;                // programmed time behind the last sample that stays known, for retracing
   double servo_period_ms = 0.44274211;  // at which limits are counted where the path's velocity steps; 0: stop there

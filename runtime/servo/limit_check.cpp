@@ -37,6 +37,7 @@ bool LimitCheck::Row::keeps_limits() const {
 }
 
 void LimitCheck::take(const SampleBlock& block) {
+  while (!joins_.empty() && joins_.front().time_ms < block.time_ms(0) - 10 * block.period_ms) joins_.pop_front();
   for (const int motor : block.motors) {
     if (states_.size() <= static_cast<std::size_t>(motor)) states_.resize(static_cast<std::size_t>(motor) + 1);
     begin_block(states_[static_cast<std::size_t>(motor)], motor, block);
@@ -70,12 +71,17 @@ void LimitCheck::take_sample(State& s, double position_mu, double time_ms, doubl
   note(s, s.row.speed, std::abs(s.speed), limit(&MotorActivity::max_speed_mu_ms), time_ms);
   take_acceleration(s, (p0 - 2 * s.p1 + s.p2) / (h * h), (s.p1 - s.p2) / h, time_ms - h);
   const double jerk = (p0 - 3 * s.p1 + 3 * s.p2 - s.p3) / (h * h * h);
-  note(s, s.row.jerk, std::abs(jerk), limit(&MotorActivity::max_jerk_mu_ms3), time_ms - h);
+  if (!spans_join(s.now.coord, time_ms - 3 * h, time_ms))
+    note(s, s.row.jerk, std::abs(jerk), limit(&MotorActivity::max_jerk_mu_ms3), time_ms - h);
   take_position(s, position_mu, time_ms);
   s.p3 = s.p2;
   s.p2 = s.p1;
   s.p1 = p0;
   ++s.since_change;
+}
+
+bool LimitCheck::spans_join(int coord, double from_ms, double to_ms) const {
+  return std::any_of(joins_.begin(), joins_.end(), [&](const Join& j) { return j.coord == coord && j.time_ms >= from_ms && j.time_ms <= to_ms; });
 }
 
 void LimitCheck::take_acceleration(State& s, double accel, double speed_before, double time_ms) {

@@ -2,6 +2,7 @@
 // does, from first, second and third differences of the servo samples. Nothing is stored but the last three samples of each motor.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <vector>
 
@@ -43,6 +44,8 @@ class LimitCheck : public SampleSink {
 
   explicit LimitCheck(Ask ask) : ask_(std::move(ask)) {}
   void take(const SampleBlock& block) override;
+  /// The path's own acceleration steps there (MachineObservers::jerk_join): no jerk is noted of the samples around it. Ascending.
+  void excuse_jerk(int coord, double time_ms) { joins_.push_back({coord, time_ms}); }
   /// Motors that were in use, by number. The run is over.
   std::vector<Row> rows();
 
@@ -64,9 +67,12 @@ class LimitCheck : public SampleSink {
   void end_braking(State& s);
   void note(const State& s, WorstValue& worst, double value, double limit, double time_ms) const;
   bool all_rest(int coord) const;
+  bool spans_join(int coord, double from_ms, double to_ms) const;
 
   Ask ask_;
   std::vector<State> states_;            // by motor number
+  struct Join { int coord; double time_ms; };
+  std::deque<Join> joins_;
 };
 
 }  // namespace pmac::runtime

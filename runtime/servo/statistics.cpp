@@ -14,20 +14,22 @@ void MotionStatistics::take(const SampleBlock& block) {
     if (!s.row.seen) {
       s.row.motor = motor;
       s.row.seen = true;
-      s.row.min_mu = s.row.max_mu = s.previous_mu = s.before_mu = block.at(static_cast<int>(m), 0);
+      s.row.min_mu = s.row.max_mu = block.at(static_cast<int>(m), 0);
+      s.previous_mu = s.before_mu = s.row.min_mu + (block.home_mu.empty() ? 0 : block.home_mu[m]);
     }
     for (int k = 0; k < block.count; ++k) {
-      const double now = block.at(static_cast<int>(m), k);
+      const double home = block.home_mu.empty() ? 0 : block.home_mu[m];  // homez moves home, not the motor
+      const double from_home = block.at(static_cast<int>(m), k), now = from_home + home;
       const double speed = std::abs(now - s.previous_mu) / h;
       const double accel = std::abs(now - 2 * s.previous_mu + s.before_mu) / (h * h);
       if (speed > s.row.max_speed_mu_ms) { s.row.max_speed_mu_ms = speed; s.row.max_speed_at_ms = block.time_ms(k); }
       if (accel > s.row.max_accel_mu_ms2) { s.row.max_accel_mu_ms2 = accel; s.row.max_accel_at_ms = block.time_ms(k) - h; }
-      s.row.min_mu = std::min(s.row.min_mu, now);
-      s.row.max_mu = std::max(s.row.max_mu, now);
+      s.row.min_mu = std::min(s.row.min_mu, from_home);
+      s.row.max_mu = std::max(s.row.max_mu, from_home);
+      s.row.final_mu = from_home;
       s.before_mu = s.previous_mu;
       s.previous_mu = now;
     }
-    s.row.final_mu = s.previous_mu;
   }
 }
 

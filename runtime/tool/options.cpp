@@ -25,6 +25,19 @@ std::string check_seconds(const std::string& text) {
   return number ? std::string() : "'" + text + "' is not a time in seconds";
 }
 
+void add_kinematics_options(CLI::App& app, RunOptions& o) {
+  app.add_option("--kinematics", o.robots, "stock kinematics in place of the routines of coordinate system N; 'list' lists them")
+      ->type_name("N=ROBOT[:SETTINGS]")
+      ->allow_extra_args(false);
+  KinCheckOptions& check = o.kin_check;
+  app.add_flag("--kin-check", check.enabled, "check kinematics instead of running: forward(inverse(pose)), what is out of reach, singular poses");
+  app.add_option("--kin-range", check.ranges, "poses to check")->type_name("[&N.]AXIS=LOW:HIGH")->allow_extra_args(false);
+  app.add_option("--kin-samples", check.samples, "number of poses")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  app.add_option("--kin-seed", check.seed, "seed of the random poses")->capture_default_str();
+  app.add_option("--kin-tolerance", check.tolerance_uu, "allowed error in axis units")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--kin-condition", check.condition, "condition number above which a pose counts as singular")->check(CLI::Range(1.0, 1e15))->capture_default_str();
+}
+
 }  // namespace
 
 std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
@@ -48,6 +61,8 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
   app.add_option("--fine", fine, "fine interpolation between segments")->check(CLI::IsMember({"through", "bspline"}))->capture_default_str();
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
+  app.add_flag("--limit-jerk", o.limit_jerk, "buffered lookahead keeps Motor[].InvJmax as well");
+  add_kinematics_options(app, o);
   app.add_flag("--console", o.console, "read on-line commands from standard input and answer each line");
   app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();
   app.add_flag("--realtime", o.realtime, "with --console: simulated time follows the clock on the wall");
@@ -63,7 +78,9 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
     std::fprintf(stderr, "pmac-run: %s\nRun with --help for more information.\n", message.c_str());
     return kExitUsage;
   };
-  if (o.files.empty() && !o.console) return usage("FILE is required");
+  const bool lists_robots = o.robots.size() == 1 && o.robots[0] == "list";
+  if (o.files.empty() && !o.console && !lists_robots) return usage("FILE is required");
+  if (o.kin_check.enabled && o.console) return usage("--kin-check runs nothing, and no --console");
   if (o.realtime && !o.console) return usage("--realtime goes with --console");
   if (at.size() % 2 != 0) return usage("--at needs a time and a command");
   for (std::size_t i = 0; i + 1 < at.size(); i += 2) {

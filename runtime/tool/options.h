@@ -12,6 +12,16 @@ namespace pmac::tool {
 
 enum class JsonDetail { kNone, kMoves, kSummary };
 
+/// --kin-check: how poses are sampled and judged.
+struct KinCheckOptions {
+  bool enabled = false;
+  int samples = 10'000;
+  std::uint64_t seed = 1;
+  std::vector<std::string> ranges;      // "X=-300:300" or "&2.X=-300:300"
+  double tolerance_uu = 1e-6;           // forward(inverse(pose)) against the pose
+  double condition = 1e4;               // a pose with a condition number above it is singular
+};
+
 struct RunOptions {
   std::vector<std::string> files;
   std::vector<std::string> include_dirs;
@@ -30,6 +40,9 @@ struct RunOptions {
   JsonDetail json = JsonDetail::kNone;
   motion::FineInterpolation fine = motion::FineInterpolation::kThrough;
   motion::RampRule ramp_rule = motion::RampRule::kPower;
+  bool limit_jerk = false;
+  std::vector<std::string> robots;                            // --kinematics, "1=scara:upper_arm_mm=350"
+  KinCheckOptions kin_check;
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,

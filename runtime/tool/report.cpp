@@ -50,6 +50,10 @@ void Report::add(const runtime::MoveRecord& move) {
   if (keep_moves_) moves_.push_back(move);
 }
 
+void Report::add(const runtime::JerkJoin& join) {
+  if (++join_count_ <= kMostJoins) joins_.push_back(join);
+}
+
 std::string status_name(const runtime::Machine& machine, const runtime::RunOutcome& outcome) {
   switch (outcome.end) {
     case runtime::RunEnd::kTimeLimit: return "time-limit";
@@ -87,6 +91,15 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
   }
   j["faults"] = ordered_json::array();
   for (const auto& fault : faults_) j["faults"].push_back(fault_json(machine, fault));
+  if (join_count_ > 0) {
+    j["jerk_joins"] = ordered_json::array();
+    for (const auto& join : joins_) {
+      ordered_json o{{"time_s", join.time_ms / 1000.0}, {"coord", join.coord}, {"ratio", join.ratio}};
+      put_source(o, machine, join.source);
+      j["jerk_joins"].push_back(o);
+    }
+    j["jerk_join_count"] = join_count_;
+  }
   j["refused"] = ordered_json::array();
   for (const auto& [command, reason] : refusals_) j["refused"].push_back({{"command", command}, {"text", reason}});
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -101,6 +114,9 @@ std::string Report::text(const runtime::Machine& machine, const runtime::RunOutc
   for (const auto& r : statistics.rows())
     out += fmt::format("{:>5} {:>15.6g} {:>15.6g} {:>15.6g} {:>11.6g} {:>8.4f} {:>12.6g} {:>8.4f}\n", r.motor, r.final_mu, r.min_mu, r.max_mu,
                        r.max_speed_mu_ms, r.max_speed_at_ms / 1000.0, r.max_accel_mu_ms2, r.max_accel_at_ms / 1000.0);
+  if (join_count_ > 0) out += fmt::format("{} joins at which the acceleration of the path itself steps, and the jerk is not limited:\n", join_count_);
+  for (const auto& join : joins_)
+    out += fmt::format("{:>12.6f} s  {}: {:.3g} times the limit of the jerk\n", join.time_ms / 1000.0, machine.place(join.source), join.ratio);
   return out;
 }
 

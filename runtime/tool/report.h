@@ -20,6 +20,7 @@ class Report {
   void add(const runtime::MoveRecord& move);
   void add(const runtime::OutputChange& change) { if (keep_moves_) outputs_.push_back(change); }
   void add(const runtime::FaultRecord& fault) { faults_.push_back(fault); }
+  void add(const runtime::JerkJoin& join);
   /// Of --check-limits, when the run is over.
   void add_limits(std::vector<runtime::LimitCheck::Row> rows) { limits_ = std::move(rows); }
   void add_refusal(const std::string& command, const std::string& reason) { refusals_.emplace_back(command, reason); }
@@ -44,6 +45,9 @@ class Report {
   std::vector<runtime::MoveRecord> moves_;
   std::vector<runtime::OutputChange> outputs_;
   std::vector<runtime::FaultRecord> faults_;
+  static constexpr std::size_t kMostJoins = 1000;   // kept; the others are counted
+  std::size_t join_count_ = 0;
+  std::vector<runtime::JerkJoin> joins_;
   std::vector<std::pair<std::string, std::string>> refusals_;   // command, reason
   std::vector<runtime::LimitCheck::Row> limits_;
 };

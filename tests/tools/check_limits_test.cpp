@@ -58,14 +58,15 @@ TEST_CASE("check-limits: a limit of 0 is off, and a program within its limits en
   }
 }
 
-TEST_CASE("check-limits: jerk counts where it is assigned", "[tools]") {
+TEST_CASE("check-limits: jerk counts with --limit-jerk", "[tools]") {
   const Workspace w;
   // 0.5 mu/ms^2 built up in 50 ms: jerk 0.01 mu/ms^3, against 1/200.
   const std::string limits = "Motor[1].MaxSpeed=0 Motor[1].InvAmax=0 Motor[2].MaxSpeed=0 Motor[2].InvAmax=0 ";
-  const json j = limits_of(w, segmented(limits + "Motor[1].InvJmax=200", "F50 ta100 ts50\nlinear X20\n"), 3);
+  const json j = limits_of(w, segmented(limits + "Motor[1].InvJmax=200", "F50 ta100 ts50\nlinear X20\n"), 3, "--limit-jerk");
   CHECK(j["limits"]["1"]["jerk"]["value"].get<double>() == Approx(0.01).epsilon(1e-3));
   CHECK(j["limits"]["1"]["jerk"]["limit"] == 0.005);
-  limits_of(w, segmented(limits + "Motor[1].InvJmax=99.9", "F50 ta100 ts50\nlinear X20\n"), 0);
+  limits_of(w, segmented(limits + "Motor[1].InvJmax=99.9", "F50 ta100 ts50\nlinear X20\n"), 0, "--limit-jerk");
+  limits_of(w, segmented(limits + "Motor[1].InvJmax=200", "F50 ta100 ts50\nlinear X20\n"), 0);
 }
 
 TEST_CASE("check-limits: a stop has InvDmax where it is assigned, a blend has not", "[tools]") {

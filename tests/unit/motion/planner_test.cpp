@@ -194,3 +194,12 @@ TEST_CASE("blends agree with velocities integrated sample by sample", "[motion][
     CHECK(worst < 1e-5);  // Simpson over 0.05 ms steps that straddle the corners of r
   }
 }
+
+TEST_CASE("planner: ramps given as rates leave each end of a short move a blend of its own", "[motion][planner]") {
+  // 10 mm/s into a delay of one segment, 5 ms, and out of it: each blend gets 5 ms, so 2 mu/ms^2 at the most.
+  PipelineConfig config = config_xy();
+  config.segment_time_ms = 5;
+  const Run r = run(config, Program().feed(10).ta(-2000).xy(10, 0).delay(1).xy(12, 0), {}, 0.05);
+  REQUIRE_FALSE(r.fault);
+  CHECK(r.max_accel(0) <= 2.001);
+}

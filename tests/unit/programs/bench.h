@@ -25,7 +25,8 @@ inline std::string read_program(const std::string& name) {
 
 class ProgramBench : public runtime::SampleSink {
  public:
-  explicit ProgramBench(const std::string& name, std::string text = {}, motion::FineInterpolation fine = motion::FineInterpolation::kThrough) {
+  explicit ProgramBench(const std::string& name, std::string text = {}, motion::FineInterpolation fine = motion::FineInterpolation::kThrough,
+                        bool limit_jerk = false) {
     if (text.empty()) text = read_program(name);
     auto module = session_.compile({{name, text}});
     for (const auto& d : session_.diagnostics().take()) diagnostics.push_back(d.message);
@@ -34,6 +35,8 @@ class ProgramBench : public runtime::SampleSink {
     REQUIRE(verify(*module).empty());
     runtime::MachineOptions options;
     options.fine = fine;
+    options.limit_jerk = limit_jerk;
+    options.observers.jerk_join = [this](const runtime::JerkJoin& join) { joins.push_back(join); };
     options.compile_online = [this](std::string_view line, std::string_view where) -> std::variant<bytecode::Module, std::string> {
       auto compiled = session_.compile_online(line, where);
       for (const auto& d : session_.diagnostics().take())
@@ -46,7 +49,6 @@ class ProgramBench : public runtime::SampleSink {
     options.observers.fault = [this](const runtime::FaultRecord& f) { faults.push_back(f); };
     options.observers.answer = [this](const std::string& answer) { answers.push_back(answer); };
     options.observers.refused = [this](const std::string& what, const std::string& why) { refusals.push_back(what + ": " + why); };
-    options.observers.answer = [this](const std::string& answer) { answers.push_back(answer); };
     machine = std::make_unique<runtime::Machine>(options);
     machine->add_sink(this);
     machine->add_sink(&statistics);
@@ -79,6 +81,7 @@ class ProgramBench : public runtime::SampleSink {
   std::vector<runtime::MoveRecord> moves;
   std::vector<runtime::OutputChange> outputs;
   std::vector<runtime::FaultRecord> faults;
+  std::vector<runtime::JerkJoin> joins;
   std::vector<double> time_ms;
   std::vector<std::array<double, bytecode::kMaxMotors>> motor_mu;
   runtime::MotionStatistics statistics;

@@ -40,6 +40,17 @@ TEST_CASE("pvt: the cubic between two points and velocities; fractions of a mill
   CHECK(bench.moves[1].end_ms == Approx(201.0).margin(1e-9));
 }
 
+TEST_CASE("pvt: ta, ts and the motors' limits do not change it", "[programs][pvt]") {
+  for (const char* segments : {"Coord[1].SegMoveTime=0", "Coord[1].SegMoveTime=7"}) {
+    const Lines bench("F1 ta100 ts20 pvt40 X-6:-100\nX-10:0", std::string("Motor[1].InvAmax=10 Motor[1].InvDmax=10 Motor[1].MaxSpeed=1 ") + segments);
+    REQUIRE(bench.faults.empty());
+    CHECK(bench.moves[1].end_ms == Approx(80.0).margin(1e-9));
+    const auto [t, x] = at(bench, 1, 20);
+    const double T = 40, V = -0.1, D = -6;
+    CHECK(x == Approx((3 * D / T / T - V / T) * t * t + (-2 * D / T / T / T + V / T / T) * t * t * t).margin(1e-9));
+  }
+}
+
 TEST_CASE("pvt: goes through a transformation", "[programs][pvt]") {
   const Lines bench("Tdata[1].Diag[6]=0 Tdata[1].Diag[7]=0 Tdata[1].XYZ[0]=-2 Tdata[1].XYZ[2]=2 tsel 1\npvt200 X5:50\nX10:0");
   REQUIRE(bench.faults.empty());
@@ -96,11 +107,6 @@ TEST_CASE("spline: unequal times keep the acceleration continuous", "[programs][
   CHECK(step < 0.05 * greatest);
   CHECK(last(bench, 1) == Approx(40.0).margin(1e-9));
   CHECK(last(bench, 2) == Approx(4.0).margin(1e-9));
-}
-
-TEST_CASE("spline: three different times are not simulated", "[programs][spline]") {
-  CHECK(Lines("spline100 spline100 spline100 X1\nX2").faults.empty());
-  CHECK(Lines("spline100 spline200 spline100 X1").faults.size() == 1);
 }
 
 TEST_CASE("pvt: acceleration limits of the motors put no ramp before an unsegmented move", "[programs][pvt]") {

@@ -24,7 +24,7 @@ const std::vector<Rule>& rules() {
       {"compiler/tool/", {"compiler/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h"}},
       {"compiler/", {"compiler/"}, {"fmt/"}},
       {"kinematics/", {"kinematics/"}, {"Eigen/"}},
-      {"runtime/tool/", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "nlohmann/", "CLI/", "unistd.h", "poll.h"}},
+      {"runtime/tool/", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "nlohmann/", "CLI/", "Eigen/", "unistd.h", "poll.h"}},
       {"runtime/pmac_run.cpp", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "CLI/", "unistd.h"}},
       {"runtime/gather/", {"runtime/"}, {"fmt/", "nlohmann/", "unistd.h", "sys/", "fcntl.h"}},
       {"runtime/", {"runtime/", "kinematics/", "compiler/bytecode/"}, {"fmt/", "Eigen/"}},
