@@ -250,11 +250,11 @@ void move_motor(const Call& call, Motor& m) {
     case ControlVerb::kJogStop: jog_stop(s, m); break;
     case ControlVerb::kJogTo: call.refusal = jog_to(s, m, value, source); break;
     case ControlVerb::kJogToAndKeep: m.prejog_mu = value; call.refusal = jog_to(s, m, value, source); break;
-    case ControlVerb::kJogBy:
-    case ControlVerb::kJogByActual: call.refusal = jog_to(s, m, here + value, source); break;
+    case ControlVerb::kJogBy: call.refusal = jog_to(s, m, here + value, source); break;
+    case ControlVerb::kJogByActual: call.refusal = jog_to(s, m, m.actual_at(now) + value, source); break;
     case ControlVerb::kJogToTrigger: call.refusal = jog_to(s, m, value, source, call.argument(2)); break;
-    case ControlVerb::kJogByTrigger:
-    case ControlVerb::kJogByActualTrigger: call.refusal = jog_to(s, m, here + value, source, call.argument(2)); break;
+    case ControlVerb::kJogByActualTrigger: call.refusal = jog_to(s, m, m.actual_at(now) + value, source, call.argument(2)); break;
+    case ControlVerb::kJogByTrigger: call.refusal = jog_to(s, m, here + value, source, call.argument(2)); break;
     case ControlVerb::kJogReturn: call.refusal = jog_to(s, m, m.prejog_mu, source); break;
     case ControlVerb::kHome:
     case ControlVerb::kHomeAlso: call.refusal = home(s, m, source); break;

@@ -81,7 +81,7 @@ double coord_value(Machine::State& s, const ElementAddress& a) {
     case ElementId::kCoordClosedLoop: return all_motors(s, c, ElementId::kMotorClosedLoop);
     case ElementId::kCoordAmpEna: return all_motors(s, c, ElementId::kMotorAmpEna);
     case ElementId::kCoordCsolve: return c.map().solvable();
-    case ElementId::kCoordProgRunning: return c.program_running();
+    case ElementId::kCoordProgRunning: return c.program_running() && !c.at_limit();
     case ElementId::kCoordProgProceeding: return c.program_running() && (!c.time_base().stands(s.now_ms) || c.path_rate(s.now_ms) != 0);
     case ElementId::kCoordProgActive: return c.program_active();
     case ElementId::kCoordFeedHold: return static_cast<double>(c.time_base().hold_state(s.now_ms));

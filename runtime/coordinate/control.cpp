@@ -26,7 +26,6 @@ constexpr const char* kAtLimit = "error #39: NOT READY TO RUN: the program is su
 
 std::string CoordSystem::begin(std::uint32_t number, std::int64_t label) {
   if (program_running()) return "error #38: PROGRAM RUNNING: abort it first";
-  if (limit_fault_) return kAtLimit;
   rotary_pointed_ = number == 0;
   rotary_state_ = RotaryState::kNone;
   if (rotary_pointed_) {
@@ -101,6 +100,7 @@ std::string CoordSystem::why_not_ready(bool at_rest) const {
 
 std::string CoordSystem::pause(double time_ms) {
   if (!program_running()) return fmt::format("error #39: NOT READY TO RUN: coordinate system {} executes no program", number_);
+  if (at_limit_) return kAtLimit;
   const bool between_items = phase_ == Phase::kCalculating;
   const bool waits_for_interrupt = phase_ == Phase::kToRest && after_rest_ == AfterRest::kNextInterrupt;
   if (waits_for_interrupt) after_rest_ = AfterRest::kPause;
@@ -127,7 +127,6 @@ void CoordSystem::note_pause(double time_ms) {
 }
 
 std::string CoordSystem::go_on_after_pause(double time_ms, bool one_step) {
-  if (limit_fault_) return kAtLimit;
   if (std::string refusal = why_not_ready(true); !refusal.empty()) return refusal;
   for (std::size_t i = 0; i < motors_.size() && i < paused_mu_.size(); ++i) {
     const Motor& m = machine_.motors[static_cast<std::size_t>(motors_[i])];
@@ -154,6 +153,7 @@ std::string CoordSystem::step(double time_ms) {
 
 std::string CoordSystem::resume(double time_ms) {
   if (phase_ == Phase::kPaused) return go_on_after_pause(time_ms, false);
+  if (at_limit_ && !retracing()) return kAtLimit;
   const TimeBase::Hold hold = time_base_.hold_state(time_ms);
   if (hold == TimeBase::Hold::kNone || hold == TimeBase::Hold::kResuming)
     return fmt::format("error #39: NOT READY TO RUN: the program of coordinate system {} is neither paused nor held", number_);
@@ -237,10 +237,12 @@ void CoordSystem::abort(double time_ms) {
     if (!pipeline_.end_sequence()) collect_timings();
   }
   report_unfinished(time_ms, false);
+  const bool holds = machine_.elements.get(ElementId::kCoordSoftLimitStopDis, static_cast<unsigned>(number_)) != 0;
   for (std::size_t i = 0; on_path_ && i < path_map_.motors.size(); ++i) {
     Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
-    if (m.limit_stop != Motor::LimitStop::kNone) velocity[i] = 0;   // held at a software limit
-    if (m.limit_stop != Motor::LimitStop::kNone) position[i] = m.position_mu;
+    const bool held = holds && m.limit_stop != Motor::LimitStop::kNone;   // at a software limit
+    if (held) velocity[i] = 0;
+    if (held) position[i] = m.position_mu;
     m.position_mu = position[i];
     m.velocity_mu_ms = velocity[i] * path_rate(time_ms);
   }
@@ -269,6 +271,7 @@ void CoordSystem::drop_program() {
   shape_at_ms_ = kNever;
   pause_requested_ = pause_at_rest_ = stepping_ = quick_stopped_ = false;
   limit_fault_.reset();
+  at_limit_ = false;
   rotary_state_ = RotaryState::kNone;
   phase_ = Phase::kIdle;
   resume_ms_ = kNever;

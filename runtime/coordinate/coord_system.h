@@ -109,6 +109,8 @@ class CoordSystem {
   void fail(double time_ms, Fault fault);
   void fail_at_once(double time_ms, Fault fault);
   bool program_running() const { return phase_ != Phase::kIdle && phase_ != Phase::kPaused; }
+  /// Stands, or has stood, on the path at a software limit.
+  bool at_limit() const { return at_limit_; }
   /// Executing, or waiting to go on.
   bool program_active() const { return phase_ != Phase::kIdle; }
   /// Executing, and going on by itself: not held, not at 0 %.
@@ -321,7 +323,8 @@ class CoordSystem {
   AfterRest after_rest_ = AfterRest::kEnd;
   double resume_ms_ = kNever;       // when service() acts
   bool stop_requested_ = false, pause_requested_ = false;
-  std::optional<Fault> limit_fault_;  // stopped, or stopping, on the path at a software limit: only abort ends it
+  std::optional<Fault> limit_fault_;  // the path ends at a software limit
+  bool at_limit_ = false;             // and has come there: it may be retraced, and only abort ends it
   bool stepping_ = false;           // pauses after one item
   bool step_block_ = false;         // between bstart and bstop
   bool pause_at_rest_ = false;      // pauses after the next pvt move that ends at rest

@@ -1,7 +1,7 @@
 // Software position limits (Motor[].MaxPos, MinPos) of what a program moves. Source: User's Manual p429-431, p793.
 //
 //   lookahead            the pipeline ends the path where a motor meets its limit: the motion comes to rest there, on the path; the program
-//                        is then suspended with ErrorStatus 32 until it is aborted
+//                        is then suspended with ErrorStatus 32: it may be retraced, and waits to be aborted
 //   otherwise            a move whose end lies beyond a limit is an error when it is calculated: abort, ErrorStatus 32; a path that bulges
 //                        beyond (arcs) is aborted when the commanded position passes the limit (servo/servo_cycle.h)
 //   SoftLimitStopDis     the motor stands at its limit while the others go on
@@ -9,6 +9,7 @@
 // Inferred: that the check of ends aborts at once, while moves before are still executing.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,7 @@ using bytecode::ElementId;
 namespace {
 
 constexpr double kRounding_mu = 1e-6;
+constexpr double kNearLimit_mu = 1e-4;
 
 }  // namespace
 
@@ -72,15 +74,21 @@ void CoordSystem::stop_at_limit(double time_ms, Fault fault) {
   resume_ms_ = std::max(time_ms, time_base_.time_at(pipeline_.end_ms()));
 }
 
+/// As after a quick stop, which may be retraced.
 void CoordSystem::stopped_at_limit(double time_ms) {
+  resume_ms_ = kNever;
+  time_base_.force_rate(time_ms, 0);
+  time_base_.shape_end(true);
+  quick_stopped_ = true;
+  if (std::exchange(at_limit_, true)) return;
   report_unfinished(time_ms, false);
-  pause_here(time_ms);
-  for (int motor : motors_) {
-    Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
-    const PositionRange range = software_limits(machine_.elements, motor);
-    const double near_mu = 1e-6 * std::max(1.0, std::abs(m.position_mu));
-    if (m.position_mu >= range.max_mu - near_mu) m.limit_stop = Motor::LimitStop::kPlusPosition;
-    if (m.position_mu <= range.min_mu + near_mu) m.limit_stop = Motor::LimitStop::kMinusPosition;
+  std::vector<double> end_mu(path_map_.motors.size());
+  pipeline_.peek(pipeline_.end_ms(), end_mu);
+  for (std::size_t i = 0; i < end_mu.size(); ++i) {
+    Motor& m = machine_.motors[static_cast<std::size_t>(path_map_.motors[i])];
+    const PositionRange range = software_limits(machine_.elements, m.number);
+    if (end_mu[i] >= range.max_mu - kNearLimit_mu) m.limit_stop = Motor::LimitStop::kPlusPosition;
+    if (end_mu[i] <= range.min_mu + kNearLimit_mu) m.limit_stop = Motor::LimitStop::kMinusPosition;
   }
   machine_.elements.set(ElementId::kCoordErrorStatus, error_status(FaultKind::kSoftLimit), static_cast<unsigned>(number_));
   machine_.report_fault({time_ms, number_, -1, *limit_fault_});

@@ -56,6 +56,10 @@ motion::PipelineConfig CoordSystem::config() {
   c.max_feed_uu = e.get(ElementId::kCoordMaxFeedRate, cs);
   c.corner_blend_bp = e.get(ElementId::kCoordCornerBlendBp, cs);
   c.corner_dwell_bp = e.get(ElementId::kCoordCornerDwellBp, cs);
+  c.no_corner_bp = e.get(ElementId::kCoordNoCornerBp, cs);
+  c.corner_radius_uu = e.get(ElementId::kCoordCornerRadius, cs);
+  c.corner_error_uu = e.get(ElementId::kCoordCornerError, cs);
+  c.corner_accel_uu_ms2 = e.get(ElementId::kCoordCornerAccel, cs) / std::pow(e.get(ElementId::kCoordFeedTime, cs), 2);
   c.added_dwell_ms = e.get(ElementId::kCoordAddedDwellTime, cs);
   c.history_ms = c.segment_time_ms > 0 ? history_wanted_ms() : 0;
   c.map = motor_map();
@@ -210,6 +214,7 @@ std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
 }
 
 void CoordSystem::at_rest(double time_ms) {
+  if (after_rest_ == AfterRest::kLimit) return stopped_at_limit(time_ms);
   settle_path(time_ms);
   switch (after_rest_) {
     case AfterRest::kHomeZero:
@@ -225,7 +230,7 @@ void CoordSystem::at_rest(double time_ms) {
       go_on(time_ms);
       break;
     case AfterRest::kPause: pause_here(time_ms); break;
-    case AfterRest::kLimit: stopped_at_limit(time_ms); break;
+    case AfterRest::kLimit: break;
     case AfterRest::kDwell: start_dwell(time_ms); break;
     case AfterRest::kRapid: start_rapid(time_ms); break;
     case AfterRest::kNextInterrupt:
@@ -244,7 +249,7 @@ void CoordSystem::settle_path(double time_ms) {
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
   pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
-  if (!map_.has_inverse_motors() && !limit_fault_) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
+  if (!map_.has_inverse_motors()) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
   hold_at_limits(position);
   for (std::size_t i = 0; i < position.size(); ++i)
     machine_.motors[static_cast<std::size_t>(path_map_.motors[i])].rest(time_base_.time_at(pipeline_.end_ms()), position[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "runtime/motion/axis_vector.h"
 
@@ -59,14 +60,46 @@ std::array<double, 3> in_plane(const AxisVector& velocity, const Move& move) {
   return result;
 }
 
-/// The cosine of the change in direction is below the set one (CornerBlendBp, CornerDwellBp).
-bool corner_is_too_sharp(const Corner& corner, const Move& next, double cosine) {
-  if (cosine == 0) return false;
+/// Cosine of the change in direction in the plane of `normal`; none where a move does not move there.
+std::optional<double> cosine_of(const Corner& corner, const Move& next) {
   const auto a = in_plane(corner.before, next), b = in_plane(corner.after, next);
   const double product = std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]);
-  if (product == 0) return false;
-  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / product < cosine;
+  if (product == 0) return std::nullopt;
+  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / product;
 }
+
+/// The cosine of the change in direction is below the set one (CornerBlendBp, CornerDwellBp).
+bool corner_is_too_sharp(const Corner& corner, const Move& next, double cosine) {
+  return cosine != 0 && cosine_of(corner, next).value_or(1) < cosine;
+}
+
+/// Distance of a blend from its corner: change of velocity times the integral of r over half the ramp.
+double deviation_uu(const Ramp& ramp, double change_uu_ms) {
+  return ramp.ta_ms > 0 ? change_uu_ms * (ramp.ta_ms / 8 + ramp.ts_ms * ramp.ts_ms / (24 * ramp.ta_ms)) : 0;
+}
+
+/// Largest acceleration that CornerAccel and CornerRadius leave to a blend, 0: no limit. Half way through a blend of constant acceleration
+/// the velocity is the mean of both and the acceleration at right angles to it (equal speeds): radius = speed^2 / acceleration.
+double corner_accel_uu_ms2(const Corner& corner, std::uint32_t axes, const PipelineConfig& config) {
+  double mean2 = 0;
+  for_each_axis(axes, [&](std::size_t axis) { mean2 += (corner.before[axis] + corner.after[axis]) * (corner.before[axis] + corner.after[axis]) / 4; });
+  const double by_radius = config.corner_radius_uu > 0 ? mean2 / config.corner_radius_uu : 0;
+  if (config.corner_accel_uu_ms2 <= 0 || by_radius <= 0) return std::max(config.corner_accel_uu_ms2, by_radius);
+  return std::min(config.corner_accel_uu_ms2, by_radius);
+}
+
+/// The blend's ramp under CornerAccel and CornerRadius, which make it longer, and CornerError, which makes it shorter and has the last word.
+Ramp corner_ramp(const Ramp& ramp, const Corner& corner, const Move& next, std::uint32_t axes, const PipelineConfig& config) {
+  if (config.no_corner_bp != 0 && cosine_of(corner, next).value_or(1) > config.no_corner_bp) return ramp;
+  const double change = speed_change(corner, axes), accel = corner_accel_uu_ms2(corner, axes, config);
+  const Ramp longer = accel > 0 && ramp.ta_ms * accel < change ? lengthened(ramp, change, 1 / accel, 0) : ramp;
+  const double deviation = deviation_uu(longer, change);
+  if (config.corner_error_uu <= 0 || deviation <= config.corner_error_uu) return longer;
+  return scaled_to(longer, longer.total_ms() * config.corner_error_uu / deviation);
+}
+
+/// A ramp shorter than the motors' limits ask for.
+bool is_too_short(const Ramp& ramp, const Ramp& within_limits) { return ramp.ta_ms < within_limits.ta_ms * (1 - kRoomTolerance); }
 
 std::vector<double> motor_change(const Move& previous, const Move& next) {
   std::vector<double> change(next.curve->motor_delta_mu.size());
@@ -95,9 +128,14 @@ Join decide_join(const Move& previous, const Move& next, double entry_total_ms, 
     return stop;
   }
   if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) return {};
-  const Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
+  const JoinKind kind = kind_of(corner, axes);
+  Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
+  if (kind == JoinKind::kCorner) {
+    ramp = corner_ramp(ramp, corner, next, axes, config);
+    if (is_too_short(ramp, ramp_within_limits({0, 0}, speed_change(corner, axes), motor_change(previous, next), false, config))) return {};
+  }
   const double room = std::min(2 * previous.time_ms - entry_total_ms, room_in(next));
-  Join join{kind_of(corner, axes), ramp, corner.speed_before, corner.speed_after, 0};
+  Join join{kind, ramp, corner.speed_before, corner.speed_after, 0};
   if (config.segment_time_ms > 0) {
     if (ramp.total_ms() > room) join.ramp = scaled_to(ramp, std::max(0.0, room));
     return join;

@@ -101,6 +101,10 @@ struct PipelineConfig {
   double corner_blend_bp = 0;           // cosine; 0: off
   double corner_dwell_bp = 0;           // cosine; 0: off
   double added_dwell_ms = 0;            // at corners of corner_dwell_bp
+  double no_corner_bp = 0;              // cosine above which the next three leave a corner alone; 0: off
+  double corner_radius_uu = 0;          // least radius of a blend's path; 0: off
+  double corner_error_uu = 0;           // largest distance of a blend from its corner; 0: off
+  double corner_accel_uu_ms2 = 0;       // largest acceleration of a blend; 0: off
   bool jerk_limit_unsegmented = false;  // InvJmax acts on unsegmented S-curve ramps
   bool note_governing = false;          // say of every move which limits held it back
   std::vector<MotorLimits> limits;      // [motor], as MotorMap::motors

@@ -109,7 +109,7 @@ std::optional<ServoTrip> trip_at(const Run& r, double commanded_raw_mu, double a
   const Watch& w = r.watch;
   const int motor = r.motor->number;
   const double step_mu = commanded_raw_mu - r.commanded_raw_mu, home_mu = r.motor->home_position_mu;
-  const bool free_to_trip = r.motor->moving() && r.motor->limit_stop == Motor::LimitStop::kNone;
+  const bool free_to_trip = r.motor->moving() && r.motor->limit_stop != Motor::LimitStop::kSwitch;
   if (w.amplifier_fault) return ServoTrip{motor, ServoTrip::Kind::kAmplifier, 0};
   if (w.plant && w.closed && w.fatal_mu > 0 && std::abs(r.loop.error_mu()) > w.fatal_mu)
     return ServoTrip{motor, ServoTrip::Kind::kFollowingError, r.loop.error_mu()};

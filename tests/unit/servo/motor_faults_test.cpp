@@ -179,6 +179,23 @@ TEST_CASE("inside lookahead the path ends where the motor meets its limit, and t
   CHECK(bench.refusals[0].find("software position limit") != std::string::npos);
 }
 
+TEST_CASE("from a software limit the path may be retraced, and forward again", "[faults]") {
+  ProgramBench bench("a.pmc", kSetUp + kLookahead + "define lookahead 5000\nMotor[1].MaxPos=12000 Motor[1].MinPos=-1000\nopen prog 1\nlinear abs ta0 ts0 F10 X10\nX20 Y5\nX30\nclose\n");
+  bench.machine->at(5000, "&1 <");
+  bench.machine->at(6000, "&1 >");
+  bench.machine->at(10000, "Coord[1].ProgRunning #1j=0");
+  bench.machine->at(10001, "&1 a #1j=0");
+  bench.run("&1 b1r");
+  CHECK(bench.faults.size() == 1);
+  CHECK(position_mu(bench, 4900) == Approx(12000).margin(1e-5));
+  CHECK(position_mu(bench, 6000) < 5000);
+  CHECK(position_mu(bench, 9900) == Approx(12000).margin(1e-5));
+  CHECK(largest_mu(bench) <= 12000 + 1e-5);
+  CHECK(bench.motor(1).max_accel_mu_ms2 <= 0.1001);
+  CHECK(bench.motor(1).final_mu == 0);
+  CHECK(bench.refusals.size() == 1);
+}
+
 TEST_CASE("inside lookahead no commanded position passes the limit, wherever it lies on the path", "[faults]") {
   double worst_accel = 0;
   for (double limit_mu = 500; limit_mu < 30000; limit_mu += 1111) {

@@ -145,6 +145,15 @@ TEST_CASE("programs and commands see the lag of a motor with a plant", "[servo]"
   CHECK(std::stod(bench.answers[7]) == Approx(14500).epsilon(1e-12));
 }
 
+TEST_CASE("j^ counts from the actual position, j: from the commanded one", "[servo]") {
+  for (const auto& [jog, end_mu] : std::vector<std::pair<std::string, double>>{{"#1j^1000", 14500 - 400 + 1000}, {"#1j:1000", 14500 + 1000}}) {
+    ProgramBench bench("a.pmc", kSetUp + "Motor[1].Servo.Kvff=0\n");
+    bench.machine->at(1500, jog);
+    bench.run("#1j+");
+    CHECK(bench.motor(1).final_mu == Approx(end_mu).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("a motor without a plant is where it is commanded to be", "[servo]") {
   ProgramBench bench("a.pmc", kSetUp + "Sim.Motor[1].Plant=0\n");
   bench.machine->at(500, "Motor[1].PosError Motor[1].FeWarn #1f");
