@@ -25,6 +25,13 @@ bool numberNameFollows() {
   const bool is_address = before == HASH || before == COORD || before == AMPERSAND;
   return _input->LA(1) == NAME && sameLine() && !begins_statement && !is_address;
 }
+/// What list shows comes next on its line.
+bool listedFollows() {
+  const size_t type = _input->LA(1);
+  return (type == PROG || type == PLC || type == SUBPROG || type == FORWARD || type == INVERSE || type == ROTARY || type == NAME) && sameLine();
+}
+/// The name or number of a buffer comes next, on the same line.
+bool bufferNameFollows() { return (_input->LA(1) == NAME || _input->LA(1) == NUMBER) && sameLine(); }
 /// An else of that type comes next, or behind one semicolon.
 bool elseFollows(size_t type) { return _input->LA(_input->LA(1) == SEMICOLON ? 2 : 1) == type; }
 }
@@ -258,7 +265,7 @@ online
   | ECHO NUMBER?
   | LINE_PERCENT ({sameLine()}? data)?
   | single=('?' | '\\' | '$' | RESET)
-  | LIST ({sameLine()}? listed)?
+  | LIST ({listedFollows()}? listed | {!listedFollows()}?)
   | OTHER_COMMAND restOfLine
   | programControl
   ;
@@ -267,9 +274,9 @@ restOfLine : ({!restEnds()}? ~(EOF | ';'))* {restEnds()}? ;
 
 /// A buffer; or the place of a program (pc, apc), with the number of lines behind a comma.
 listed
-  : kind=(PROG | PLC | SUBPROG) ({sameLine()}? bufferName)?
-  | kind=(FORWARD | INVERSE | ROTARY) ({sameLine()}? ('(' NUMBER ')' | NUMBER))?
-  | NAME ({sameLine()}? ',' ({sameLine()}? NUMBER)?)?
+  : kind=(PROG | PLC | SUBPROG) ({bufferNameFollows()}? bufferName | {!bufferNameFollows()}?)
+  | kind=(FORWARD | INVERSE | ROTARY) ('(' NUMBER ')' | NUMBER)?
+  | NAME (',' NUMBER?)?
   ;
 
 /// First, count, step: I5213,15,100=10.
