@@ -55,6 +55,10 @@ void divide(const Segment& segment, double from_ms, double to_ms, int halvings, 
   divide(segment, middle_ms, to_ms, halvings - 1, ends_ms);
 }
 
+bool stands_still(const Segment& segment) {
+  return std::all_of(segment.motor.begin(), segment.motor.end(), [](const MotorCubic& q) { return q.c1 == 0 && q.c2 == 0 && q.c3 == 0; });
+}
+
 /// The segment run through with x from x0 to x1; one of them is not zero.
 TimedSegment timed(Segment segment, double x0, double x1) {
   const double rate0 = std::sqrt(x0), rate1 = std::sqrt(x1);
@@ -74,6 +78,10 @@ Lookahead::Lookahead(std::vector<MotorLimits> limits, double window_ms, double s
 void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
   steps_.add(std::move(segment), prepared_);
   for (PreparedSegment& prepared : prepared_) {
+    if (stands_still(prepared.segment)) {
+      rest(std::move(prepared.segment), out);
+      continue;
+    }
     append(std::move(prepared));
     if (known_ms_ < window_ms_ + chunk_ms_) continue;
     backward(0);
@@ -84,8 +92,22 @@ void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
 
 void Lookahead::finish(std::vector<TimedSegment>& out) {
   steps_.finish(prepared_);
-  for (PreparedSegment& prepared : prepared_) append(std::move(prepared));
+  for (PreparedSegment& prepared : prepared_) {
+    if (stands_still(prepared.segment)) rest(std::move(prepared.segment), out);
+    else append(std::move(prepared));
+  }
   prepared_.clear();
+  end_path(out);
+}
+
+/// Nothing moves: the path before ends in a stop, and programmed time runs at full rate.
+void Lookahead::rest(Segment segment, std::vector<TimedSegment>& out) {
+  end_path(out);
+  const double duration_ms = segment.duration_ms;
+  out.push_back({std::move(segment), 0, duration_ms, 1, 0});
+}
+
+void Lookahead::end_path(std::vector<TimedSegment>& out) {
   if (!intervals_.empty()) {
     const bool stops = is_moving(intervals_.back().segment, true);
     if (stops && intervals_.back().start_bound == 0) split_last();

@@ -49,6 +49,8 @@ class Lookahead : public TimeLaw {
   void append(PreparedSegment prepared);
   void append_part(PreparedSegment prepared);
   void push(Interval interval);
+  void rest(Segment segment, std::vector<TimedSegment>& out);
+  void end_path(std::vector<TimedSegment>& out);
   void split_last();
   void backward(double end_beta);
   void commit_first(double end_beta, std::vector<TimedSegment>& out);
