@@ -11,16 +11,6 @@ constexpr double kMinPart_ms = 0.01;
 /// x that could be reached at the end of a segment to x that may: where they are nearer there is nothing to gain within it.
 constexpr double kWorthwhileRise = 1.02;
 
-/// Part of a segment from `from` on, `duration` long.
-Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
-  Segment part = segment;
-  part.start_ms += from_ms;
-  part.duration_ms = duration_ms;
-  for (MotorCubic& q : part.motor)
-    q = {q.position(from_ms), q.velocity(from_ms), q.c2 + 3 * q.c3 * from_ms, q.c3};
-  return part;
-}
-
 /// The limits may act in the segment: its own acceleration at full rate is not far from them, or a speed beyond. Elsewhere x is 1, or changes
 /// as on a straight line.
 bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
@@ -46,13 +36,14 @@ double change_of_velocity(const Segment& segment, double from_ms, double to_ms) 
   return speed > 0 ? change / speed : 0;
 }
 
-/// Ends of the parts that a stretch of the segment is halved into until velocities change little over each.
-void divide(const Segment& segment, double from_ms, double to_ms, int halvings, std::vector<double>& ends_ms) {
+/// Ends of the parts that a stretch of the segment is halved into until velocities change little over each, and none is longer than longest_ms.
+void divide(const Segment& segment, double from_ms, double to_ms, double longest_ms, int halvings, std::vector<double>& ends_ms) {
   constexpr double kChange = 0.03;
-  if (halvings == 0 || change_of_velocity(segment, from_ms, to_ms) <= kChange) return ends_ms.push_back(to_ms);
+  const bool even = to_ms - from_ms <= longest_ms && change_of_velocity(segment, from_ms, to_ms) <= kChange;
+  if (halvings == 0 || even) return ends_ms.push_back(to_ms);
   const double middle_ms = (from_ms + to_ms) / 2;
-  divide(segment, from_ms, middle_ms, halvings - 1, ends_ms);
-  divide(segment, middle_ms, to_ms, halvings - 1, ends_ms);
+  divide(segment, from_ms, middle_ms, longest_ms, halvings - 1, ends_ms);
+  divide(segment, middle_ms, to_ms, longest_ms, halvings - 1, ends_ms);
 }
 
 bool stands_still(const Segment& segment) {
@@ -120,12 +111,14 @@ void Lookahead::end_path(std::vector<TimedSegment>& out) {
   at_start_ = true;
 }
 
-/// In parts, where the velocity of the program changes much: x is linear over each.
+/// In parts, where the velocity of the program changes much or a speed limit is far below it: x is linear over each, and may reach its
+/// highest value between them.
 void Lookahead::append(PreparedSegment prepared) {
   constexpr int kHalvings = 6;
   if (!may_be_limited(prepared.segment, limits_, prepared.accel_share)) return append_part(std::move(prepared));
   part_ends_ms_.clear();
-  divide(prepared.segment, 0, prepared.segment.duration_ms, kHalvings, part_ends_ms_);
+  const double whole_ms = prepared.segment.duration_ms, slowest_rate = std::sqrt(rate_limits(prepared.segment, limits_, 1).max_rate2);
+  divide(prepared.segment, 0, whole_ms, whole_ms * std::max(slowest_rate, 1e-6) * (1 + 1e-9), kHalvings, part_ends_ms_);   // each takes no longer than the segment at full rate
   if (part_ends_ms_.size() == 1) return append_part(std::move(prepared));
   double from_ms = 0;
   for (const double to_ms : part_ends_ms_) {

@@ -29,6 +29,16 @@ struct Segment {
   std::vector<MotorCubic> motor;    // [motor], order of the map
 };
 
+/// Part of a segment from `from` on, `duration` long.
+inline Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
+  Segment part = segment;
+  part.start_ms += from_ms;
+  part.duration_ms = duration_ms;
+  for (MotorCubic& q : part.motor)
+    q = {q.position(from_ms), q.velocity(from_ms), q.c2 + 3 * q.c3 * from_ms, q.c3};
+  return part;
+}
+
 /// A segment and when it is executed. Programmed time runs at a rate 0..1 that changes evenly:
 /// d(t) = rate * t + rate_slope * t^2 / 2 with t = time - start_ms.
 struct TimedSegment {

@@ -134,9 +134,8 @@ void VelocitySteps::release(double end_ms, std::vector<PreparedSegment>& out) {
   const bool all = std::isinf(end_ms);
   while (!held_.empty() && (all || (held_.size() > 1 && end_of(held_.front().segment) <= end_ms))) {
     PreparedSegment& segment = held_.front();
-    const double from_ms = segment.segment.start_ms - period_ms_, to_ms = end_of(segment.segment) + period_ms_;
-    if (has_gentle_step(from_ms, to_ms)) segment.accel_share = 1 - kStepShare;
-    out.push_back(std::move(segment));
+    const double to_ms = end_of(segment.segment) + period_ms_;
+    hand_on(std::move(segment), out);
     held_.pop_front();
     while (decided_ > 0 && steps_.front().place_ms < to_ms - 6 * period_ms_) {
       steps_.pop_front();
@@ -144,6 +143,32 @@ void VelocitySteps::release(double end_ms, std::vector<PreparedSegment>& out) {
       --rated_;
     }
   }
+}
+
+/// Gentle steps take their share of the acceleration within a period of programmed time, which is at most as long as it takes; long segments are cut there.
+void VelocitySteps::hand_on(PreparedSegment whole, std::vector<PreparedSegment>& out) const {
+  const double from_ms = whole.segment.start_ms, to_ms = end_of(whole.segment), near_ms = 2 * period_ms_;
+  if (!has_gentle_step(from_ms - period_ms_, to_ms + period_ms_)) return out.push_back(std::move(whole));
+  const bool at_start = has_gentle_step(from_ms - period_ms_, from_ms + near_ms), at_end = has_gentle_step(to_ms - near_ms, to_ms + period_ms_);
+  const double first_ms = at_start ? near_ms : 0, last_ms = at_end ? near_ms : 0, middle_ms = to_ms - from_ms - first_ms - last_ms;
+  if (middle_ms < near_ms) {
+    whole.accel_share = 1 - kStepShare;
+    return out.push_back(std::move(whole));
+  }
+  const auto add = [&](double offset_ms, double duration_ms, double share) {
+    if (duration_ms == 0) return;
+    PreparedSegment part{part_of(whole.segment, offset_ms, duration_ms)};
+    if (offset_ms == 0) {
+      part.stops_at_start = whole.stops_at_start;
+      part.speed_ratio = whole.speed_ratio;
+      part.max_start_rate = whole.max_start_rate;
+    }
+    part.accel_share = share;
+    out.push_back(std::move(part));
+  };
+  add(0, first_ms, 1 - kStepShare);
+  add(first_ms, middle_ms, 1);
+  add(first_ms + middle_ms, last_ms, 1 - kStepShare);
 }
 
 bool VelocitySteps::has_gentle_step(double from_ms, double to_ms) const {

@@ -53,6 +53,7 @@ class VelocitySteps {
   double share_taken(std::size_t motor, std::size_t at, double rate) const;
   double lowest_rate_near(std::size_t at) const;
   void release(double known_ms, std::vector<PreparedSegment>& out);
+  void hand_on(PreparedSegment whole, std::vector<PreparedSegment>& out) const;
   bool has_gentle_step(double from_ms, double to_ms) const;
   PreparedSegment* starting_at(double place_ms);
 
