@@ -256,7 +256,7 @@ online
   | DEFINE LOOKAHEAD NUMBER (',' NUMBER)?
   | DELETE LOOKAHEAD
   | kind=(DEFINE | DELETE) ROTARY NUMBER?
-  | CLEAR ({sameLine()}? (kind=(PROG | PLC | SUBPROG) bufferName | NAME NAME))?
+  | CLEAR (ALL+ | {sameLine()}? kind=(PROG | PLC | SUBPROG) bufferName)?
   | CX (statement | ';')* LINE_END
   | COMMAND
   | ON_B ({sameLine()}? programName)?

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <limits>
 #include <pugixml.hpp>
@@ -31,6 +32,12 @@ std::string unescape(std::string_view text) {
   return result;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
 class PpprojReader {
  public:
   PpprojReader(std::int32_t file, source::SourceManager& sources, source::Diagnostics& diagnostics) : file_(file), text_(sources.file(file).text), diagnostics_(diagnostics) {}
@@ -49,6 +56,7 @@ class PpprojReader {
   std::vector<Entry> entries() {
     for (const pugi::xml_node group : project().children("ItemGroup"))
       for (const pugi::xml_node item : group.children()) take_item(item);
+    check_groups();
     std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
       if (a.folder != b.folder) return a.folder < b.folder;
       return a.order != b.order ? a.order < b.order : a.entry.path < b.entry.path;
@@ -100,8 +108,11 @@ class PpprojReader {
   void take_path(const pugi::xml_node& item, std::string path) {
     std::replace(path.begin(), path.end(), '\\', '/');
     const auto folder = folder_rank(path);
-    if (!folder) return;
     const source::Span span = span_of(item);
+    if (!folder) {
+      if (is_script(path)) diagnostics_.warning("PM6104", span, fmt::format("\"{}\" lies in none of the script folders of a project and is not loaded", path));
+      return;
+    }
     if (path.find_first_of("*?") != std::string::npos || path.find("$(") != std::string::npos) {
       diagnostics_.error("PM6104", span, "wildcards and properties in Include are not understood; list the files");
     } else if (!is_script(path)) {
@@ -115,9 +126,29 @@ class PpprojReader {
     }
   }
 
+  /// Names of elements that are read, in any case as MSBuild has it; what is nearly one of them is a slip. The IDE writes hundreds of others.
+  void check_groups() {
+    for (const pugi::xml_node group : project().children()) {
+      if (group.type() != pugi::node_element) continue;
+      check_name(group, {"ItemGroup", "PropertyGroup", "Import", "UsingTask", "Target", "ProjectExtensions", "Choose"});
+      if (std::string_view(group.name()) != "PropertyGroup") continue;
+      for (const pugi::xml_node property : group.children())
+        if (property.type() == pugi::node_element) check_name(property, {"PVarStart", "QVarStart", "MVarStart"});
+    }
+  }
+
+  void check_name(const pugi::xml_node& node, const std::vector<std::string_view>& names) {
+    const std::string written = lower_case(node.name());
+    if (std::any_of(names.begin(), names.end(), [&](std::string_view name) { return lower_case(name) == written; })) return;
+    const std::string_view near = source::nearest_word(written, names);
+    if (near.empty()) return;
+    const auto begin = static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0));
+    diagnostics_.warning("PM6105", span_at(begin, std::string_view(node.name()).size()), fmt::format("<{}> is not read; did you mean <{}>?", node.name(), near));
+  }
+
   void read_start(const char* name, std::int64_t& start) {
     for (const pugi::xml_node group : project().children("PropertyGroup")) {
-      const pugi::xml_node node = group.child(name);
+      const pugi::xml_node node = group.find_child([&](const pugi::xml_node& child) { return lower_case(child.name()) == lower_case(name); });
       if (!node) continue;
       const std::string_view text = node.text().get();
       std::int64_t value = -1;

@@ -1,5 +1,6 @@
 // pp_proj.ini, which the IDE writes for the controller: section [PMAC_PROGRAMS] holds PVARSTART, QVARSTART, MVARSTART, the lines
-// file1=/var/ftp/usrflash/Project/... in load order, and last_file_number. The other sections set up the controller.
+// file1=/var/ftp/usrflash/Project/... in load order, and last_file_number. The other sections that the IDE writes set up the controller's
+// buffers, tasks and C programs and mean nothing here.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,6 +38,10 @@ std::string relative_path(std::string_view path) {
   return at == std::string::npos ? result : result.substr(at + kProject.size());
 }
 
+/// The sections of the files that the IDE writes.
+const std::vector<std::string_view> kSections = {"PMAC_PROGRAMS", "PMAC_BUFFERS", "PMAC_SIG",        "PMAC_HARDWARE",  "PMAC_CONFIG",      "PMAC_PROJECT", "PMACMODE",   "CPU_AFFINITY",      "THREAD_PRIORITY",
+                                                 "ETHERCAT",      "IEC61131",     "CUSTOM_CONFIG_FILE", "MACRO_STATIONS", "PROJECT_SETTINGS", "CPLCC",        "CPLCS",      "LINUX_PROGRAMS",    "RTUSRCCODE"};
+
 class IniReader {
  public:
   IniReader(std::int32_t file, const source::SourceManager& sources, source::Diagnostics& diagnostics) : file_(file), text_(sources.file(file).text), diagnostics_(diagnostics) {}
@@ -47,7 +52,7 @@ class IniReader {
     for (std::size_t end; begin < text_.size(); begin = end + 1) {
       end = std::min(text_.find('\n', begin), text_.size());
       const std::string_view line = trim(std::string_view(text_).substr(begin, end - begin));
-      if (line.starts_with("[")) programs = line == "[PMAC_PROGRAMS]";
+      if (line.starts_with("[")) programs = line == "[PMAC_PROGRAMS]", check_section(line);
       else if (programs && !line.empty() && line.front() != '#' && line.front() != ';') take_line(line, listing);
     }
     listing.entries = entries();
@@ -57,6 +62,16 @@ class IniReader {
   source::Span span_of(std::string_view part) const {
     const auto begin = static_cast<std::uint32_t>(part.data() - text_.data());
     return {file_, begin, begin + static_cast<std::uint32_t>(part.size()), -1};
+  }
+
+  void check_section(std::string_view line) {
+    const std::size_t end = line.find(']');
+    if (end == std::string_view::npos) return void(diagnostics_.warning("PM6105", span_of(line), "a section is a name in square brackets: [PMAC_PROGRAMS]"));
+    const std::string_view name = line.substr(1, end - 1);
+    if (std::find(kSections.begin(), kSections.end(), name) != kSections.end()) return;
+    const source::Guess near = source::guess_word(name, kSections);
+    const std::string hint = near.word.empty() ? std::string() : fmt::format("; did you mean [{}]?", near.word);
+    diagnostics_.warning("PM6105", span_of(line.substr(0, end + 1)), fmt::format("[{}] is no section that the IDE writes, and is not read{}", name, hint));
   }
 
   void take_line(std::string_view line, Listing& listing) {

@@ -7,6 +7,7 @@
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/format_text.h"
 #include "compiler/bytecode/function.h"
+#include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/sema/binder.h"
 
 namespace pmac::compiler::sema {
@@ -178,8 +179,25 @@ void Binder::bind_text_out(const std::string& text, std::vector<ir::ExprPtr>& va
 void Binder::bind(ir::Command& node, const source::Span& span) { bind_text_out(node.text, node.values, span); }
 void Binder::bind(ir::Send& node, const source::Span& span) { bind_text_out(node.text, node.values, span); }
 
+/// Foo(5) that is no function: a subprogram without call, or whiel (P1). False where it is like nothing.
+bool Binder::report_misspelt_statement(const std::string& name, const source::Span& span) {
+  const source::Span word{span.file, span.begin, static_cast<std::uint32_t>(span.begin + name.size()), span.expansion};
+  const Name* known = project_.names.find(name);
+  if (known && known->kind == bytecode::SymbolKind::kSubprog) {
+    diagnostics_.error("PM3054", word, fmt::format("'{0}' is a subprogram; write call {0}(...)", name)).fix = source::FixIt{{span.file, span.begin, span.begin, span.expansion}, "call "};
+    return true;
+  }
+  const std::string written = lower(name);
+  const source::Guess near = source::guess_word(written, power_pmac::keyword_names());
+  if (known || near.word.empty()) return false;
+  diagnostics_.error("PM2008", word, fmt::format("unknown word '{}'; did you mean '{}'?", name, near.word)).fix = source::guess_fix(word, near);
+  return true;
+}
+
 /// A call that stands alone must do something.
 void Binder::bind(ir::Evaluate& node, const source::Span& span) {
+  const auto* use = std::get_if<ir::NameUse>(&node.value->node);
+  if (use && !is_function(use->name) && !is_variable(use->name) && report_misspelt_statement(use->name, span)) return;
   bind_expr(*node.value);
   const auto* call = std::get_if<ir::FunctionCall>(&node.value->node);
   if (call && bytecode::function_info(call->function).uses_memory) return;

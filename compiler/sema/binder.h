@@ -67,6 +67,8 @@ class Binder {
   void bind_arguments_of_call(std::vector<ir::ExprPtr>& arguments, std::vector<bool>& by_reference);
   void mark_references(std::vector<bool>& by_reference, std::vector<ir::ExprPtr>& arguments, const std::vector<ir::Parameter>& parameters, const source::Span& span, std::string_view name);
   void check_returned(const ir::Expr& argument, std::string_view name);
+  void bind_pointer_element(ir::Expr& expr);
+  void check_list_bounds(const ir::Assign& node);
   void check_bare_number(const ir::Expr& number);
   void check_control_number(const ir::Control& node);
   void begin_buffer(ir::Buffer& buffer);
@@ -89,6 +91,7 @@ class Binder {
   bool is_function(std::string_view name) const;
   bool is_declared(std::string_view name) const;
   bool is_variable(std::string_view name) const;
+  bool report_misspelt_statement(const std::string& name, const source::Span& span);
   void report_user_routine(const source::Span& span);
   void bind_function(ir::Expr& expr, ir::NameUse& use);
   void bind_arguments(bytecode::Function function, std::vector<ir::ExprPtr>& arguments, const source::Span& span);

@@ -62,6 +62,8 @@ void Binder::bind(ir::Block& node, const source::Span&) { bind_body(node.body); 
 void Binder::bind(ir::Assign& node, const source::Span& span) {
   for (ir::ExprPtr& value : node.values) bind_value(*value);
   bind_target(*node.target);
+  check_element_values(node, diagnostics_);
+  check_list_bounds(node);
   const auto* variable = std::get_if<ir::Variable>(&node.target->node);
   const auto* element = std::get_if<ir::Element>(&node.target->node);
   const bool indexed_element = element && !element->indices.empty();
@@ -75,6 +77,17 @@ void Binder::bind(ir::Assign& node, const source::Span& span) {
   }
   const bool no_sync = node.synchronous && variable && (variable->variable_class == ir::VariableClass::kR || variable->variable_class == ir::VariableClass::kC);
   if (no_sync) diagnostics_.error("PM3024", span, "R and C variables cannot be assigned synchronously; write = instead of ==");
+}
+
+/// Table(2) = 1,2,3: the list may go on behind the array.
+void Binder::check_list_bounds(const ir::Assign& node) {
+  const auto* variable = std::get_if<ir::Variable>(&node.target->node);
+  if (!variable || variable->index || variable->name.empty()) return;
+  const std::int64_t end = array_end(*variable);
+  const std::int64_t last = variable->number + static_cast<std::int64_t>(node.values.size()) - 1;
+  if (end == 0 || variable->number >= end || last < end) return;
+  const auto beyond = static_cast<std::size_t>(end - variable->number);
+  diagnostics_.warning("PM3047", node.values[beyond]->span, fmt::format("the list goes on behind the end of the array '{}'", variable->name));
 }
 
 /// P1,10,2=5: every variable of the series must exist.
@@ -298,6 +311,7 @@ void Binder::bind(ir::Control& node, const source::Span&) {
     const bool bare_number = without_parentheses && i == 0 && !use->has_arguments && !is_plc_verb(node.verb) && node.verb != ControlVerb::kReportPointer;
     if (use && is_plc_verb(node.verb) && !is_variable(use->name)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
     else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
+    else if (use && node.verb == ControlVerb::kReportPointer && use->has_arguments) bind_pointer_element(*argument);
     else if (use && node.verb == ControlVerb::kReportPointer) bind_program_name(*argument, SymbolKind::kPointer, "pointer");
     else bind_value(*argument);
     if (bare_number) check_bare_number(*argument);
@@ -328,6 +342,15 @@ void Binder::check_control_number(const ir::Control& node) {
   if (!fits) diagnostics_.error("PM3009", node.arguments[0]->span, fmt::format("the number of a {} is 0 to {}", thing, most));
 }
 
+/// Name(2)->: the number of the variable.
+void Binder::bind_pointer_element(ir::Expr& expr) {
+  bind_value(expr);
+  const auto* variable = std::get_if<ir::Variable>(&expr.node);
+  const bool is_pointer = variable && variable->variable_class == ir::VariableClass::kM && !variable->index;
+  if (!is_pointer) diagnostics_.error("PM3004", expr.span, "an element of an array of pointers is wanted, with a constant index");
+  expr.node = ir::Number{is_pointer ? static_cast<double>(variable->number) : 0};
+}
+
 void Binder::bind_program_name(ir::Expr& expr, SymbolKind kind, std::string_view what) {
   const std::string text = std::get<ir::NameUse>(expr.node).name;
   const Name* name = project_.names.find(text);
@@ -353,9 +376,11 @@ void Binder::bind(ir::DefineAxis& node, const source::Span&) {
 void Binder::bind(ir::DefinePointer& node, const source::Span& span) {
   if (node.size < 0) {
     const Name* name = project_.names.find(node.name);
-    if (name && name->kind == SymbolKind::kPointer) node.definition.first_m = node.definition.last_m = static_cast<std::int32_t>(name->number);
-    else report_unknown(node.name, node.name_span, "pointer");
-    node.definition.first_m = node.definition.last_m = std::max(node.definition.first_m, 0);
+    const std::int64_t index = std::max(node.definition.first_m, 0);
+    const bool known = name && name->kind == SymbolKind::kPointer;
+    if (!known) report_unknown(node.name, node.name_span, "pointer");
+    else if (index >= std::max<std::int64_t>(name->size, 1)) diagnostics_.error("PM3004", node.name_span, fmt::format("the array '{}' of pointers has the elements 0 to {}", node.name, std::max<std::int64_t>(name->size, 1) - 1));
+    node.definition.first_m = node.definition.last_m = known ? static_cast<std::int32_t>(name->number + index) : 0;
   }
   if (!node.element) return;
   bind_value(*node.element);

@@ -81,6 +81,11 @@ class Declarer {
   source::Diagnostics& diagnostics_;
 };
 
+void declare_in_body(ir::Body& body, Declarer& declarer) {
+  for (ir::StmtPtr& statement : body)
+    if (auto* globals = std::get_if<ir::Globals>(&statement->node)) declarer.declare_globals(*globals);
+}
+
 }  // namespace
 
 void reserve_numbers(const ir::Unit& unit, Project& project) {
@@ -90,16 +95,19 @@ void reserve_numbers(const ir::Unit& unit, Project& project) {
 
 void declare(ir::Unit& unit, Project& project, source::Diagnostics& diagnostics) {
   Declarer declarer(project, diagnostics);
-  for (ir::StmtPtr& statement : unit.load) {
+  std::set<std::size_t> declared;
+  const auto declare_buffer = [&](std::size_t index) {
+    if (!declared.insert(index).second) return;
+    declarer.declare_buffer(unit.buffers[index]);
+    declarer.number_routines(unit.buffers[index]);
+    declare_in_body(unit.buffers[index].body, declarer);
+  };
+  for (ir::StmtPtr& statement : unit.load) {  // in the order of the text
     if (auto* globals = std::get_if<ir::Globals>(&statement->node)) declarer.declare_globals(*globals);
     if (auto* pointer = std::get_if<ir::DefinePointer>(&statement->node)) declarer.declare_pointer(*pointer);
+    if (auto* open = std::get_if<ir::OpenBuffer>(&statement->node)) declare_buffer(open->buffer);
   }
-  for (ir::Buffer& buffer : unit.buffers) {
-    declarer.declare_buffer(buffer);
-    declarer.number_routines(buffer);
-    for (ir::StmtPtr& statement : buffer.body)
-      if (auto* globals = std::get_if<ir::Globals>(&statement->node)) declarer.declare_globals(*globals);
-  }
+  for (std::size_t i = 0; i < unit.buffers.size(); ++i) declare_buffer(i);
 }
 
 }  // namespace pmac::compiler::sema

@@ -34,6 +34,9 @@ void declare(ir::Unit& unit, Project& project, source::Diagnostics& diagnostics)
 /// Binds and checks a unit.
 void check(ir::Unit& unit, Project& project, const Settings& settings, source::Diagnostics& diagnostics);
 
+/// Constants that are assigned to an element and make no sense there (check_values.cpp).
+void check_element_values(const ir::Assign& assign, source::Diagnostics& diagnostics);
+
 /// Moves on axes that no motor serves; call when every unit has been checked.
 void check_served_axes(const std::vector<ir::Unit>& units, Project& project, source::Diagnostics& diagnostics);
 

@@ -3,27 +3,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "compiler/source/characters.h"
+
 namespace pmac::source {
 namespace {
-
-void append_utf8(std::string& out, std::uint32_t code) {
-  const auto tail = [&](int shift) { out += static_cast<char>(0x80 | ((code >> shift) & 0x3f)); };
-  if (code < 0x80) {
-    out += static_cast<char>(code);
-  } else if (code < 0x800) {
-    out += static_cast<char>(0xc0 | (code >> 6));
-    tail(0);
-  } else if (code < 0x10000) {
-    out += static_cast<char>(0xe0 | (code >> 12));
-    tail(6);
-    tail(0);
-  } else {
-    out += static_cast<char>(0xf0 | (code >> 18));
-    tail(12);
-    tail(6);
-    tail(0);
-  }
-}
 
 class Utf16Reader {
  public:
@@ -62,7 +45,7 @@ std::string decode_text(std::string bytes) {
   const bool big = bytes.starts_with("\xfe\xff");
   if (!little && !big) return bytes;
   std::string text = "\xef\xbb\xbf";
-  for (Utf16Reader reader(bytes, little); !reader.at_end();) append_utf8(text, reader.next());
+  for (Utf16Reader reader(bytes, little); !reader.at_end();) append_utf8(reader.next(), text);
   return text;
 }
 

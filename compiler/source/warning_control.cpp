@@ -26,12 +26,19 @@ std::optional<std::string_view> code_before_mark(std::string_view line, std::siz
   return in_text ? std::nullopt : std::optional(code);
 }
 
+/// The first word of a part of text.
+Span span_of_word(std::int32_t file, std::string_view text, std::string_view part) {
+  const auto begin = static_cast<std::uint32_t>(part.data() - text.data());
+  const std::size_t length = std::min(part.find_first_of(" (\t"), part.size());
+  return {file, begin, begin + static_cast<std::uint32_t>(length), -1};
+}
+
 bool is_comment_line(std::string_view line) { return trim(line).starts_with("//"); }
 
 }  // namespace
 
 std::string WarningOptions::apply(std::string_view option) {
-  const bool off = option.starts_with("no-");
+  const bool off = option.starts_with("no-") && !is_warning_group(option);  // no-coord is the name of a group
   std::string_view name = off ? option.substr(3) : option;
   if (name == "all" || name == "extra") {
     (name == "all" ? all_ : extra_) = !off;
@@ -102,7 +109,10 @@ std::vector<WarningControl::Suppression>& WarningControl::suppressions_of(std::i
     const std::string_view command = trim(line.substr(static_cast<std::size_t>(place.column - 1) + kMark.size()));
     const bool whole_file = command.starts_with("ignore-file(");
     const std::size_t open = command.find('('), close = command.find(')');
-    if ((!whole_file && !command.starts_with("ignore(")) || close == std::string_view::npos) continue;
+    if ((!whole_file && !command.starts_with("ignore(")) || close == std::string_view::npos) {
+      if (!command.starts_with("fmt ")) entry->second.push_back({{}, span_of_word(file, text, command), place.line, false, false});
+      continue;
+    }
     int target = place.line;
     if (code->empty())
       for (++target; target < lines && is_comment_line(sources_.line_text(file, target));) ++target;
@@ -122,7 +132,9 @@ void WarningControl::report_comments(std::int32_t first_file, bool all_stages_ra
   for (auto file = first_file; file < static_cast<std::int32_t>(sources_.file_count()); ++file) {
     const std::vector<Suppression> comments = suppressions_of(file);  // a copy: reporting looks comments up
     for (const Suppression& comment : comments) {
-      if (!is_warning_group(comment.group)) {
+      if (comment.group.empty()) {
+        diagnostics.warning("PM7020", comment.span, "this is no comment for pmacc; there are ignore(name), ignore-file(name), fmt off and fmt on");
+      } else if (!is_warning_group(comment.group)) {
         const std::string_view near = nearest_word(comment.group, warning_groups());
         auto& warning = diagnostics.warning("PM7020", comment.span, fmt::format("no warning has the name '{}'{}", comment.group, near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)));
         if (!near.empty()) warning.fix = FixIt{comment.span, std::string(near), FixSafety::kSuggestion};

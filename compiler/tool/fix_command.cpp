@@ -61,7 +61,8 @@ std::string done_line(const source::SourceManager& sources, const source::Diagno
 /// A file in UTF-16 was decoded before it was compiled, and one may have changed since: those are left as they are.
 bool is_on_disk(const std::string& name, const source::FixPlan::FileEdits& file) { return read_file(name) == file.old_text; }
 
-struct Round { std::size_t applied = 0; std::size_t files = 0; };
+/// errors_left: errors that no repair was made for.
+struct Round { std::size_t applied = 0, files = 0, errors_left = 0; };
 
 Round run_round(const Arguments& arguments, const compiler::Options& options, const OwnFiles& own) {
   compiler::Session session(options);
@@ -81,23 +82,29 @@ Round run_round(const Arguments& arguments, const compiler::Options& options, co
   }
   if (arguments.format == "text" && !arguments.fix_dry_run)
     for (const source::Diagnostic* diagnostic : plan.applied) std::cerr << done_line(session.sources(), *diagnostic);
-  return {written ? plan.applied.size() : 0, written};
+  const auto is_error = [](const source::Diagnostic& diagnostic) { return diagnostic.severity == source::Severity::kError; };
+  const auto errors = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), is_error));
+  const auto mended = static_cast<std::size_t>(std::count_if(plan.applied.begin(), plan.applied.end(), [&](const source::Diagnostic* diagnostic) { return is_error(*diagnostic); }));
+  return {written ? plan.applied.size() : 0, written, written ? errors - mended : errors};
 }
 
 }  // namespace
 
 int fix(const Arguments& arguments, const compiler::Options& options) {
   const OwnFiles own(arguments);
-  std::size_t repairs = 0;
+  std::size_t repairs = 0, errors_left = 0;
   const int rounds = arguments.fix_dry_run ? 1 : kMaxRounds;
   for (int i = 0; i < rounds; ++i) {
     const Round round = run_round(arguments, options, own);
+    errors_left = round.errors_left;
     if (round.applied == 0) break;
     repairs += round.applied;
   }
   if (arguments.format == "text" && !arguments.fix_dry_run && repairs) std::cerr << fmt::format("{} repair(s) made\n", repairs);
   std::cout << std::flush;
-  return kOk;
+  if (!arguments.fix_dry_run || errors_left == 0) return kOk;
+  std::cerr << fmt::format("{} error(s) would be left; pmacc --check shows them\n", errors_left);
+  return kUserError;
 }
 
 }  // namespace pmac::pmacc

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* kExamples = R"(Examples:
   pmacc fmt oval.pmc                  rewrite the file in place
   pmacc fmt --check *.pmc *.plc       name the files that are not formatted, exit code 1 if there are any
+  pmacc fmt --check MyMachine         the same of all script files in and below a folder
   pmacc fmt --diff oval.pmc           show what would change, change nothing
   pmacc fmt - < oval.pmc              standard input to standard output
 
@@ -69,8 +71,6 @@ void print_problems(const std::string& name, const std::string& text, const std:
 }
 
 Outcome format_file(const std::string& name, ProjectNames& project, const FmtArguments& arguments) {
-  std::error_code ignored;
-  if (fs::is_directory(name, ignored)) throw UsageError(fmt::format("{0} is a directory; name the files, for example {0}/*.pmc", name));
   const std::string text = read_file(name);
   const std::string shown = name == "-" ? "<stdin>" : name;
   const style::Formatted formatted = style::format(text, shown, project.of(name == "-" ? "stdin" : name, text), arguments.style);
@@ -87,10 +87,48 @@ Outcome format_file(const std::string& name, ProjectNames& project, const FmtArg
   return result == text ? Outcome::kSame : Outcome::kChanged;
 }
 
+bool is_script(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".pmc" || extension == ".plc" || extension == ".pmh" || extension == ".kin";
+}
+
+/// The script files in and below a folder, without hidden folders, by name.
+std::vector<std::string> scripts_below(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end; !error && it != end; it.increment(error)) {
+    if (it->is_directory() && it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
+    else if (it->is_regular_file() && is_script(it->path())) names.push_back(it->path().string());
+  }
+  if (error) throw UsageError(fmt::format("cannot read the folder {}", folder));
+  if (names.empty()) throw UsageError(fmt::format("there are no script files (.pmh .kin .pmc .plc) in {}", folder));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The files that are meant: folders stand for the script files in them.
+std::vector<std::string> files_of(const FmtArguments& arguments, int& exit_code) {
+  std::vector<std::string> files;
+  for (const std::string& name : arguments.files) {
+    std::error_code ignored;
+    if (!fs::is_directory(name, ignored)) {
+      files.push_back(name);
+      continue;
+    }
+    try {
+      for (std::string& file : scripts_below(name)) files.push_back(std::move(file));
+    } catch (const UsageError& error) {
+      std::cerr << "pmacc fmt: " << error.what() << "\n";
+      exit_code = kUsage;
+    }
+  }
+  return files;
+}
+
 int format_files(const FmtArguments& arguments) {
   ProjectNames project;
   int exit_code = kOk;
-  for (const std::string& name : arguments.files) {
+  for (const std::string& name : files_of(arguments, exit_code)) {
     try {
       const Outcome outcome = format_file(name, project, arguments);
       if (outcome == Outcome::kRefused) exit_code = std::max(exit_code, kUserError);
@@ -109,7 +147,7 @@ int format_files(const FmtArguments& arguments) {
 }
 
 void declare_options(CLI::App& app, FmtArguments& arguments) {
-  app.add_option("files", arguments.files, "files to rewrite in place; - reads standard input and writes standard output")->required();
+  app.add_option("files", arguments.files, "files to rewrite in place, or folders of .pmh .kin .pmc .plc files; - reads standard input and writes standard output")->required();
   app.add_flag("--check", arguments.check, "change nothing; list the files that would change, and exit with 1 if there are any");
   app.add_flag("--diff", arguments.diff, "change nothing; print the changes as a unified diff");
   app.add_flag("--stdout", arguments.to_stdout, "write to standard output instead of the files");

@@ -9,6 +9,7 @@ namespace {
 constexpr double kLongestStep_ms = 5, kStepsPerRamp = 8, kStepsPerMove = 32, kShortestStep_ms = 0.005;
 constexpr double kLongestPart_ms = 1;      // cubics of motor positions over at most this
 constexpr double kShortestPart_ms = 1e-7;  // what is shorter is added to its neighbour
+constexpr int kMostStepsInCell = 100'000;
 constexpr double kArrived_mu = 1e-7;       // relative to 1 + the length of the path's unit; nearer than this is there
 constexpr double kJump = 0.05;             // of the jerk limit: steps of acceleration that are worth a note
 
@@ -28,7 +29,7 @@ double ramp_ms(const std::vector<MotorLimits>& limits) {
 JerkLookahead::JerkLookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms)
     : window_ms_(window_ms), chunk_ms_(window_ms / 4), servo_period_ms_(servo_period_ms),
       longest_step_ms_(std::clamp(ramp_ms(limits) / kStepsPerRamp, servo_period_ms / 2, kLongestStep_ms)),
-      steps_(limits, servo_period_ms), path_(std::move(limits)), plan_(path_, longest_step_ms_) {}
+      steps_(limits, servo_period_ms), path_(std::move(limits), servo_period_ms), plan_(path_, longest_step_ms_) {}
 
 void JerkLookahead::add(Segment segment, std::vector<TimedSegment>& out) {
   steps_.add(std::move(segment), prepared_);
@@ -76,6 +77,7 @@ bool JerkLookahead::at_stop() const {
 bool JerkLookahead::go_on(std::vector<TimedSegment>& out) {
   if (path_.empty()) return false;
   if (!entered_ || at_stop()) return enter_next_cell(out);
+  if (++steps_in_cell_ > kMostStepsInCell) return pass_by_rest(out);
   const PathState from = state_;
   for (double step_ms = longest_step_ms_; ; step_ms /= 4) {
     const JerkStep step = plan_.next(state_);
@@ -84,12 +86,32 @@ bool JerkLookahead::go_on(std::vector<TimedSegment>& out) {
       emit(from, step, state_, out);
       const PathCell& cell = path_.cell(state_.at.cell);
       reached_ms_ = path_.segment(cell.segment).start_ms + cell.from_ms;
+      if (state_.at.cell != from.at.cell) steps_in_cell_ = 0;
       path_.forget_before(state_.at.cell);
       return true;
     }
     if (step_ms < kShortestStep_ms || !path_.cell(path_.cell_end() - 1).stops) return false;
     plan_.set_step(step_ms);
   }
+}
+
+/// A place that no plan gets past in bounded time, as where the path turns on the spot: from rest to rest up to the end of the cell within
+/// the acceleration limits, and noted as a join.
+bool JerkLookahead::pass_by_rest(std::vector<TimedSegment>& out) {
+  const PathCell& cell = path_.cell(state_.at.cell);
+  double inv_accel = 0;
+  for (std::size_t m = 0; m < std::min(path_.limits().size(), cell.start.tangent.size()); ++m)
+    inv_accel = std::max(inv_accel, path_.limits()[m].inv_amax_ms2_mu * std::max(std::abs(cell.start.tangent[m]), std::abs(cell.end.tangent[m])));
+  const double left_mu = cell.end_mu() - state_.at.at_mu;
+  const double slow_ms = state_.speed_mu_ms > 0 ? 2 * left_mu / state_.speed_mu_ms : 0;
+  const double duration_ms = std::max({std::sqrt(12 * left_mu * inv_accel), slow_ms, servo_period_ms_});   // a cubic: 6 left / time^2, twice
+  emit_part(state_.at.cell, state_.at.at_mu, cell.end_mu(), state_.speed_mu_ms, 0, duration_ms, out);
+  if (!out.empty()) out.back().jerk_step = 1;
+  state_.at.at_mu = cell.end_mu();
+  state_.speed_mu_ms = state_.accel_mu_ms2 = 0;
+  steps_in_cell_ = 0;
+  plan_.restart();
+  return true;
 }
 
 /// The stop at the end of this cell is over: what stands there, then the next cell from rest.
@@ -103,6 +125,7 @@ bool JerkLookahead::enter_next_cell(std::vector<TimedSegment>& out) {
   if (next >= path_.cell_end()) return false;
   state_ = {{next, path_.cell(next).from_mu}, 0, 0};
   entered_ = true;
+  steps_in_cell_ = 0;
   plan_.restart();
   adapt_step();
   return true;

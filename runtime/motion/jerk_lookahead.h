@@ -28,6 +28,7 @@ class JerkLookahead : public TimeLaw {
   struct Rest { std::size_t cell; Segment segment; };   // stands there for the segment's time, before the cell begins
   void take(PreparedSegment prepared, std::vector<TimedSegment>& out);
   bool go_on(std::vector<TimedSegment>& out);
+  bool pass_by_rest(std::vector<TimedSegment>& out);
   bool enter_next_cell(std::vector<TimedSegment>& out);
   void adapt_step();
   void emit(const PathState& from, const JerkStep& step, const PathState& to, std::vector<TimedSegment>& out);
@@ -48,6 +49,7 @@ class JerkLookahead : public TimeLaw {
   double carry_ms_ = 0;               // time of parts that are too short to be segments of their own
   std::size_t step_cell_ = 0;         // the last cell that parts were emitted of
   bool has_emitted_ = false;
+  int steps_in_cell_ = 0;
 };
 
 }  // namespace pmac::motion

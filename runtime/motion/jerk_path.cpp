@@ -8,12 +8,12 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of a motor's acceleration and jerk that the path's own shape may take at its highest speed; the rest is for changes of the speed.
-constexpr double kSpeedShare = 0.998, kAccelShare = 0.999, kJerkShare = 0.9;
+constexpr double kSpeedShare = 0.998, kAccelShare = 0.9965, kJerkShare = 0.9;
 constexpr double kTurn_rad = 0.05;    // of the tangent in one cell
 constexpr double kChange = 0.3;       // of the curvature in one cell, of its greatest,
 constexpr double kSlightTurn_rad = 0.01;   // where the tangent turns by more than this
 constexpr int kHalvings = 12;         // of a segment into cells
-constexpr double kRest = 1e-7;        // and rests below this
+constexpr double kRest = 1e-4;        // and rests below this
 constexpr double kShortest_mu = 1e-9; // segments that move less do not move
 
 double speed2_at(const Segment& segment, double at_ms) {
@@ -62,6 +62,19 @@ Bend bend_of(const PathPlace& from, const PathPlace& to) {
 
 }  // namespace
 
+JerkPath::JerkPath(std::vector<MotorLimits> limits, double servo_period_ms) : limits_(std::move(limits)) {
+  constexpr double kUnfelt = 0.002, kPart = 0.01;
+  double accel = 1e300, jerk = 1e300;
+  for (const MotorLimits& limit : limits_) {
+    if (limit.inv_amax_ms2_mu > 0) accel = std::min(accel, 1 / limit.inv_amax_ms2_mu);
+    if (limit.inv_jmax_ms3_mu > 0) jerk = std::min(jerk, 1 / limit.inv_jmax_ms3_mu);
+  }
+  const double unfelt_mu_ms = kUnfelt * std::min(accel * servo_period_ms, jerk * servo_period_ms * servo_period_ms);
+  if (!(unfelt_mu_ms > 0 && unfelt_mu_ms < 1e100)) return;
+  sharpest_mu_ = kPart * std::min(accel, 1e100) / (unfelt_mu_ms * unfelt_mu_ms);
+  sharpest_rate_ = kPart * std::min(jerk, 1e100) / (unfelt_mu_ms * unfelt_mu_ms * unfelt_mu_ms);
+}
+
 void JerkPath::clear() {
   cells_.clear();
   segments_.clear();
@@ -71,7 +84,7 @@ void JerkPath::clear() {
 
 /// Derivatives at at_ms, seen from the side of toward_ms: where the program rests the direction is that of leaving or arriving.
 PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms, double share) const {
-  constexpr double kInside = 1e-3;
+  constexpr double kInside = 0.05;
   const bool rests = speed2_at(segment, at_ms) < kInside * kInside * speed2_at(segment, (at_ms + toward_ms) / 2);
   const double seen_ms = rests ? at_ms + kInside * (toward_ms - at_ms) : at_ms, speed = std::sqrt(speed2_at(segment, seen_ms));
   PathPlace result;
@@ -80,7 +93,7 @@ PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms
   for (const MotorCubic& q : segment.motor) along += q.velocity(seen_ms) / speed * q.acceleration(seen_ms);
   for (std::size_t m = 0; m < segment.motor.size(); ++m) {
     const MotorCubic& q = segment.motor[m];
-    const double tangent = q.velocity(seen_ms) / speed, curvature = (q.acceleration(seen_ms) - tangent * along) / (speed * speed);
+    const double tangent = q.velocity(seen_ms) / speed, curvature = std::clamp((q.acceleration(seen_ms) - tangent * along) / (speed * speed), -sharpest_mu_, sharpest_mu_);
     result.tangent.push_back(tangent);
     result.curvature_mu.push_back(curvature);
     if (m >= limits_.size()) continue;
@@ -96,13 +109,14 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   cell.from_mu = end_mu_;
   cell.length_mu = length_between(segment, from_ms, to_ms);
   cell.from_ms = from_ms;
+  cell.accel_share = share;
   cell.to_ms = to_ms;
   cell.segment = first_segment_ + segments_.size() - 1;
   cell.start = place(segment, from_ms, to_ms, share);
   cell.end = place(segment, to_ms, from_ms, share);
   cell.start.max_speed2 = std::min(cell.start.max_speed2, start_speed2);
   for (std::size_t m = 0; m < cell.start.tangent.size(); ++m) {
-    const double rate = (cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu;
+    const double rate = std::clamp((cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu, -sharpest_rate_, sharpest_rate_);
     cell.curvature_rate.push_back(rate);
     const double inv_jerk = m < limits_.size() ? limits_[m].inv_jmax_ms3_mu : 0;
     if (inv_jerk <= 0 || rate == 0) continue;
@@ -110,18 +124,22 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
     cell.start.max_speed2 = std::min(cell.start.max_speed2, speed * speed);
     cell.end.max_speed2 = std::min(cell.end.max_speed2, speed * speed);
   }
+  constexpr double kKink = 0.1;
+  const bool kinks = !cells_.empty() && !cells_.back().stops && bend_of(cells_.back().end, cell.start).turn_rad > kKink;
+  if (kinks && !(start_speed2 < 1e299)) stop_here();   // a bend too small for a cell
   end_mu_ = cell.end_mu();
   cells_.push_back(std::move(cell));
 }
 
 /// Halves until the derivatives change evenly.
 void JerkPath::add_cells(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2, int halvings) {
-  const double middle_ms = (from_ms + to_ms) / 2;
+  const double middle_ms = (from_ms + to_ms) / 2, length_mu = length_between(segment, from_ms, to_ms);
+  if (!(length_mu > kShortest_mu)) return;   // nothing moves there
   const PathPlace from = place(segment, from_ms, middle_ms, share), to = place(segment, to_ms, middle_ms, share);
   const Bend bend = bend_of(from, to);
   const bool bends = bend.turn_rad > kTurn_rad || (bend.turn_rad > kSlightTurn_rad && bend.change > kChange);
   const bool rests = speed2_at(segment, from_ms) == 0 || speed2_at(segment, to_ms) == 0;
-  if (halvings == 0 || (!bends && !(halvings == kHalvings && !rests && bend.turn_rad > 0)))
+  if (halvings == 0 || length_mu < 4 * kShortest_mu || (!bends && !(halvings == kHalvings && !rests && bend.turn_rad > 0)))
     return add_cell(segment, from_ms, to_ms, share, start_speed2);
   add_cells(segment, from_ms, middle_ms, share, start_speed2, halvings - 1);
   add_cells(segment, middle_ms, to_ms, share, 1e300, halvings - 1);

@@ -27,6 +27,7 @@ struct PathCell {
   std::size_t segment = 0;            // number, from the start of the path on
   PathPlace start, end;
   std::vector<double> curvature_rate; // [motor] 1/mu^2
+  double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
   double end_mu() const { return from_mu + length_mu; }
 };
@@ -36,7 +37,8 @@ struct CellPoint { std::size_t cell = 0; double at_mu = 0; };
 
 class JerkPath {
  public:
-  explicit JerkPath(std::vector<MotorLimits> limits) : limits_(std::move(limits)) {}
+  /// Sharper bends than a speed can make felt at servo rate are not told from a bend that sharp.
+  JerkPath(std::vector<MotorLimits> limits, double servo_period_ms);
 
   void clear();
   /// False where the segment does not move: then nothing is added but a stop.
@@ -60,6 +62,7 @@ class JerkPath {
   void add_cells(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2, int halvings);
   void add_cell(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2);
   std::vector<MotorLimits> limits_;
+  double sharpest_mu_ = 1e300, sharpest_rate_ = 1e300;   // of curvature, 1/mu, and of its rate, 1/mu^2
   std::deque<PathCell> cells_;
   std::deque<Segment> segments_;
   std::size_t first_cell_ = 0, first_segment_ = 0;

@@ -8,13 +8,14 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of the limits that a plan may use. What lies between the places that are looked at is in the rest.
-constexpr double kSpeed = 0.999, kAccel = 0.9995, kJerk = 0.997;
+constexpr double kSpeed = 0.999, kAccel = 0.9985, kJerk = 0.997;
 /// Of these, what braking uses: a plan has room for being followed from a slightly other state.
 constexpr double kBrake = 0.999;
 /// It lets go where that takes this part of the jerk limit.
 constexpr double kWholeRelease = 0.9;
 /// And passes a place at this part of the speed that is allowed there.
 constexpr double kBelow = 1 - 1e-4;
+constexpr double kStepsPerChange = 64, kLongestStep_ms = 20, kLongestTrial_ms = 5;
 constexpr double kRounding = 1e-9;
 constexpr int kBisections = 44, kHalvings = 12, kMostSteps = 20'000, kMostDips = 16;
 
@@ -45,6 +46,20 @@ struct Room {
   }
 };
 
+/// When a place after from_ms is reached, at most h.
+double time_at(const PathState& state, double jerk, double at_mu, double from_ms, double h) {
+  double low = from_ms, high = h, t = (low + high) / 2;
+  for (int i = 0; i < 30 && high - low > 1e-9 * h; ++i) {
+    const double off = state.at.at_mu + t * (state.speed_mu_ms + t * (state.accel_mu_ms2 / 2 + t * jerk / 6)) - at_mu;
+    const double speed = state.speed_mu_ms + t * (state.accel_mu_ms2 + t * jerk / 2);
+    (off > 0 ? high : low) = t;
+    const double next = speed > 0 ? t - off / speed : low;
+    if (std::abs(next - t) < 1e-9 * h) return std::clamp(next, low, high);
+    t = next > low && next < high ? next : (low + high) / 2;
+  }
+  return t;
+}
+
 }  // namespace
 
 /// Whether the motors' limits allow this motion at a place of the cell.
@@ -59,7 +74,7 @@ bool JerkPlan::passes(const PathCell& cell, double at_mu, double speed, double a
     const double motor_accel = k * speed * speed + t * accel;
     const double motor_jerk = cell.curvature_rate[m] * speed * speed * speed + 3 * k * speed * accel + t * jerk;
     const bool slow = limits[m].max_speed_mu_ms <= 0 || std::abs(t) * speed <= limits[m].max_speed_mu_ms * kSpeed;
-    good = slow && std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
+    good = slow && std::abs(motor_accel) * limits[m].inv_amax_ms2_mu <= kAccel * cell.accel_share + kRounding && std::abs(motor_jerk) * limits[m].inv_jmax_ms3_mu <= kJerk + kRounding;
   }
   if (!good) trouble_ = {at_mu, std::sqrt(max_speed2), false};
   return good;
@@ -83,12 +98,13 @@ bool JerkPlan::advance(PathState& state, const JerkStep& step) {
     return false;
   }
   std::size_t at = state.at.cell;
+  double t = 0;
   if (!passes(path_.cell(at), from_mu, v0, a0, j)) return false;
   if (a0 > 0 && a1 < 0 && !peak_passes(state, j)) return false;
   while (to_mu > path_.cell(at).end_mu()) {
     const PathCell& cell = path_.cell(at);
-    const double part = to_mu > from_mu ? (cell.end_mu() - from_mu) / (to_mu - from_mu) : 0;
-    const double speed = std::sqrt(std::max(0.0, between(v0 * v0, v1 * v1, part))), accel = between(a0, a1, part);
+    t = time_at(state, j, cell.end_mu(), t, h);
+    const double speed = std::max(0.0, v0 + t * (a0 + t * j / 2)), accel = a0 + t * j;
     const bool stands_past = cell.stops || at + 1 >= path_.cell_end();
     if (stands_past) {
       trouble_ = {cell.end_mu(), 0, at + 1 >= path_.cell_end() && !cell.stops};
@@ -111,7 +127,7 @@ bool JerkPlan::ranges(const PathState& state, Within within, Ranges& out) const 
   for (std::size_t m = 0; m < std::min(limits.size(), cell.start.tangent.size()); ++m) {
     const double t = between(cell.start.tangent[m], cell.end.tangent[m], part);
     const double k = between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], part);
-    const double inv_accel = limits[m].inv_amax_ms2_mu, inv_jerk = limits[m].inv_jmax_ms3_mu;
+    const double inv_accel = limits[m].inv_amax_ms2_mu / cell.accel_share, inv_jerk = limits[m].inv_jmax_ms3_mu;
     accel.add(k * v * v * inv_accel, t * inv_accel, kAccel);
     jerk.add((cell.curvature_rate[m] * v * v * v + 3 * k * v * state.accel_mu_ms2) * inv_jerk, t * inv_jerk, kJerk);
   }
@@ -120,6 +136,12 @@ bool JerkPlan::ranges(const PathState& state, Within within, Ranges& out) const 
   const bool any = accel.low <= accel.high && jerk.low <= jerk.high;
   out = {accel.low, accel.high, jerk.low, jerk.high};
   return any;
+}
+
+/// Steps are longer where changes of speed take long.
+double JerkPlan::whole_step_ms(double speed_change, double accel) const {
+  const double slow_ms = accel != 0 ? std::abs(speed_change / accel) / kStepsPerChange : 0;
+  return std::max(step_ms_, std::min(slow_ms, kLongestStep_ms));
 }
 
 /// And what they leave at the end of a step, as it would be.
@@ -149,13 +171,14 @@ bool JerkPlan::brake_to(PathState& state, double speed_mu_ms, Within within, std
       trouble_ = {state.at.at_mu, state.speed_mu_ms, false};
       return false;
     }
-    narrow_to_end(state, {step_ms_, std::max({room.jerk_low, (room.accel_low - a) / step_ms_, -1e12})}, within, room);
+    const double whole_ms = whole_step_ms(over, room.accel_low);
+    narrow_to_end(state, {whole_ms, std::max({room.jerk_low, (room.accel_low - a) / whole_ms, -1e12})}, within, room);
     const double brake = std::max(room.jerk_low * kBrake, -1e12), most = std::min(room.jerk_high * kBrake, 1e12);
     const auto can_let_go = [&](double v, double accel) { return v > 0 && (accel >= 0 || accel * accel <= 2 * v * most); };
-    JerkStep step{step_ms_, brake};
+    JerkStep step{whole_ms, brake};
     bool lets_go = true;
     for (int i = 0; i < kHalvings && lets_go; ++i) {
-      step.duration_ms = step_ms_ / (1 << i);
+      step.duration_ms = whole_ms / (1 << i);
       step.jerk_mu_ms3 = std::max(brake, (room.accel_low * kBrake - a) / step.duration_ms);
       const double h = step.duration_ms, j = step.jerk_mu_ms3;
       lets_go = !can_let_go(over + h * (a + h * j / 2), a + h * j);
@@ -164,8 +187,8 @@ bool JerkPlan::brake_to(PathState& state, double speed_mu_ms, Within within, std
     if (lets_go && a < 0) {
       const double j = a * a / (2 * over), left_ms = -2 * over / a;
       if (j <= most / kBrake * (1 + kRounding)) {
-        step = {std::min(step_ms_, left_ms), j};
-        const bool last = left_ms <= step_ms_ * (1 + 1e-9);
+        step = {std::min(whole_ms, left_ms), j};
+        const bool last = left_ms <= whole_ms * (1 + 1e-9);
         if (!advance(state, step)) return false;
         steps.push_back(step);
         if (last) {
@@ -258,21 +281,23 @@ double JerkPlan::top_speed(const PathState& state) const {
 
 /// The fastest step that is certain to have a stop; false where only the plan is left.
 bool JerkPlan::try_fastest(const PathState& state) {
+  follow_to_mu_ = -1;
   Ranges room;
   if (!ranges(state, Within::kEach, room)) return false;
   const double v = state.speed_mu_ms, a = state.accel_mu_ms2, top = top_speed(state), slack = top - v;
-  if (v > 0 && std::abs(a) * step_ms_ <= 1e-9 * top && slack <= 1e-6 * top && try_step(state, {step_ms_, 0})) return true;
-  narrow_to_end(state, {step_ms_, std::min({room.jerk_high, (room.accel_high - a) / step_ms_, 1e12})}, Within::kEach, room);
-  const double jerk = std::min({room.jerk_high, (room.accel_high - a) / step_ms_, 1e12});
-  const double next_v = v + step_ms_ * (a + step_ms_ * jerk / 2), next_a = a + step_ms_ * jerk;
+  const double whole_ms = std::min(whole_step_ms(v, room.accel_high), std::max(step_ms_, kLongestTrial_ms));
+  if (v > 0 && std::abs(a) * whole_ms <= 1e-9 * top && slack <= 1e-6 * top && try_step(state, {whole_ms, 0})) return true;
+  narrow_to_end(state, {whole_ms, std::min({room.jerk_high, (room.accel_high - a) / whole_ms, 1e12})}, Within::kEach, room);
+  const double jerk = std::min({room.jerk_high, (room.accel_high - a) / whole_ms, 1e12});
+  const double next_v = v + whole_ms * (a + whole_ms * jerk / 2), next_a = a + whole_ms * jerk;
   const bool overshoots = a > 0 && (next_v >= top || next_a * next_a > 2 * (top - next_v) * -room.jerk_low * kBrake);
   if (overshoots && slack > 0) {
     const double ease = -a * a / (2 * slack);
-    if (ease >= room.jerk_low && try_step(state, {std::min(step_ms_, -a / ease), ease})) return true;
+    if (ease >= room.jerk_low && try_step(state, {std::min(whole_ms, -a / ease), ease})) return true;
   }
-  if (try_step(state, {step_ms_, jerk})) return true;
+  if (try_step(state, {whole_ms, jerk})) return true;
   Trouble why = trouble_;
-  const JerkStep known = used_ < plan_.size() ? plan_[used_] : JerkStep{step_ms_, 0};
+  const JerkStep known = used_ < plan_.size() ? plan_[used_] : JerkStep{whole_ms, 0};
   double good = known.jerk_mu_ms3, bad = jerk;
   bool found = false;
   for (int i = 0; i < kBisections && std::abs(bad - good) > 1e-13 * (std::abs(good) + std::abs(bad)); ++i) {

@@ -41,6 +41,7 @@ class JerkPlan {
  private:
   struct Trouble { double at_mu = 0, max_speed_mu_ms = 0; bool at_end = false; };
   bool advance(PathState& state, const JerkStep& step);
+  double whole_step_ms(double speed_change, double accel) const;
   bool peak_passes(const PathState& state, double jerk);
   bool passes(const PathCell& cell, double at_mu, double speed, double accel, double jerk);
   /// How acceleration and jerk are held to the motors' limits: each motor its own, or the root of the sum of the squares of all, in limits.

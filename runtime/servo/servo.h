@@ -44,7 +44,7 @@ class MotionStatistics : public SampleSink {
   std::vector<Row> rows() const;
 
  private:
-  struct State { Row row; double previous_mu = 0, before_mu = 0; int known = 0; };
+  struct State { Row row; double previous_mu = 0, before_mu = 0; };
   std::vector<State> states_;  // by motor number
 };
 

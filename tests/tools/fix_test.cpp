@@ -67,6 +67,19 @@ TEST_CASE("a dry run prints the difference and changes nothing", "[fix]") {
   CHECK(w.read("a.pmc") == text);
 }
 
+TEST_CASE("a dry run says which errors no repair would mend", "[fix]") {
+  const Workspace w;
+  w.write("a.pmc", "open prog 1\nXP1\nP2 = Nothing\nclose\n");
+  const ToolResult r = w.run("pmacc", "--fix-dry-run a.pmc");
+  CHECK(r.code == 1);
+  CHECK(contains(r.out, "+X(P1)"));
+  CHECK(contains(r.err, "1 error(s) would be left; pmacc --check shows them"));
+  w.write("b.pmc", "open prog 1\nP2 = Nothing\nclose\n");
+  CHECK(w.run("pmacc", "--fix-dry-run b.pmc").code == 1);
+  w.write("c.pmc", "open prog 1\nlinear X1\nclose\n");
+  CHECK(w.run("pmacc", "--fix-dry-run c.pmc").code == 0);
+}
+
 TEST_CASE("formats of tools stand alone on standard error", "[messages]") {
   const Workspace w;
   w.write("a.pmc", "open prog 1\nXP1\nclose\n");

@@ -95,8 +95,23 @@ TEST_CASE("fmt: usage errors and unreadable files end with 2", "[fmt]") {
   CHECK(work.run("pmacc", "fmt nowhere.pmc").code == 2);
   const ToolResult folder = work.run("pmacc", "fmt folder");
   CHECK(folder.code == 2);
-  CHECK(folder.err.find("folder is a directory; name the files, for example folder/*.pmc") != std::string::npos);
+  CHECK(folder.err.find("there are no script files (.pmh .kin .pmc .plc) in folder") != std::string::npos);
   CHECK(work.run("pmacc", "fmt --help").code == 0);
+}
+
+TEST_CASE("fmt: a folder stands for the script files in and below it", "[fmt]") {
+  const Workspace work;
+  fs::create_directories(work.path("machine/PLC Programs"));
+  fs::create_directory(work.path("machine/.git"));
+  for (const char* name : {"machine/a.pmc", "machine/PLC Programs/b.plc", "machine/notes.txt", "machine/.git/c.pmc"}) work.write(name, kUgly);
+  const ToolResult check = work.run("pmacc", "fmt --check machine");
+  CHECK(check.code == 1);
+  CHECK(check.out == "machine/PLC Programs/b.plc\nmachine/a.pmc\n");
+  CHECK(work.run("pmacc", "fmt machine").code == 0);
+  CHECK(work.read("machine/PLC Programs/b.plc") == kPretty);
+  CHECK(work.read("machine/notes.txt") == kUgly);
+  CHECK(work.read("machine/.git/c.pmc") == kUgly);
+  CHECK(work.run("pmacc", "fmt --check machine").code == 0);
 }
 
 TEST_CASE("fmt: an unreadable file does not keep the others from being formatted", "[fmt]") {
@@ -177,7 +192,7 @@ TEST_CASE("fmt: included names keep their case", "[fmt]") {
 
 TEST_CASE("fmt: the programs of the course are formatted", "[fmt]") {
   const Workspace work;
-  const ToolResult ran = work.run("pmacc", std::string("fmt --check '") + PMAC_SOURCE_DIR + "/programs/'*.p[ml]c '" + PMAC_SOURCE_DIR + "/programs/kinematics/'*.pmc");
+  const ToolResult ran = work.run("pmacc", std::string("fmt --check '") + PMAC_SOURCE_DIR + "/programs/'*.p[ml]c '" + PMAC_SOURCE_DIR + "/programs/kinematics/'*.pmc '" + PMAC_SOURCE_DIR + "/programs/gcode'");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 0);
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/frontend/power_pmac/macro_definition.h"
@@ -11,6 +12,9 @@
 #include "compiler/source/source.h"
 
 namespace pmac::compiler::power_pmac {
+
+/// Words that statements of buffers begin with, for suggestions.
+const std::vector<std::string_view>& keyword_names();
 
 class Frontend {
  public:

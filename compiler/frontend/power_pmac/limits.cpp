@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "compiler/frontend/power_pmac/syntax_tree.h"
+#include "compiler/frontend/power_pmac/word_lexer.h"
 
 namespace pmac::compiler::power_pmac {
 namespace {
@@ -17,6 +18,7 @@ constexpr int kMaxOperators = 1000;   // of one statement
 constexpr int kMaxLineTokens = 4000;  // after macro expansion; long lines cost time with the square of their length
 constexpr int kMaxPrefix = 200;       // ---- in front of one operand
 
+bool is_word(std::size_t type) { return type == T::NAME || type == T::MEMBER; }
 bool is_else(std::size_t type) { return type == T::ELSE || type == T::ELSE_IF; }
 bool is_control(std::size_t type) { return type == T::IF || type == T::WHILE || type == T::DO || is_else(type) || type == T::SWITCH; }
 
@@ -97,6 +99,7 @@ bool within_limits(SyntaxTree& tree, source::Diagnostics& diagnostics) {
   for (const antlr4::Token* token : tree.tokens->getTokens()) {
     const char* problem = scan.take(token->getType(), token->getLine() != line);
     on_line = token->getLine() == line ? on_line + 1 : 0;
+    if (token->getStopIndex() - token->getStartIndex() >= kMaxWord && is_word(token->getType())) problem = "this word is too long; put blanks between its parts";
     if (on_line > kMaxLineTokens) problem = "this line is too long; break it";
     line = token->getLine();
     if (!problem) continue;

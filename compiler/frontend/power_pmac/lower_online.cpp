@@ -104,7 +104,7 @@ void Lowering::lower_at_once(P::OnlineContext* online, ir::Unit& unit) {
 /// clear prog 5 makes the buffer empty, like open prog 5 close.
 void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
   if (online->exception) return;
-  if (!online->NAME().empty()) return lower_clear_all(online, unit);
+  if (!online->ALL().empty()) return lower_clear_all(online, unit);
   if (!online->kind || !online->bufferName()) return;
   ir::Buffer buffer;
   buffer.span = buffer.close_span = span_of(online);
@@ -117,8 +117,7 @@ void Lowering::lower_clear(P::OnlineContext* online, ir::Unit& unit) {
 
 /// clear all buffers: empties the buffers that the file opened before it.
 void Lowering::lower_clear_all(P::OnlineContext* online, ir::Unit& unit) {
-  const bool known = online->NAME().size() == 2 && lower_case(text_of(token_of(online->NAME(0)))) == "all" && lower_case(text_of(token_of(online->NAME(1)))) == "buffers";
-  if (!known) {
+  if (online->ALL().size() != 2) {
     diagnostics_.error("PM2001", span_of(online), "clear takes a buffer (clear prog 5), or all buffers");
     return;
   }
@@ -266,6 +265,17 @@ void Lowering::lower_axis_definition(P::OnlineContext* online, ir::Body& out) {
   out.push_back(ir::make_stmt(span, ir::DefineAxis{std::move(definition)}));
 }
 
+/// The 2 of Name(2)->...; sema adds the number of the name. -1: no index.
+std::int32_t Lowering::index_of_pointer(P::ReferenceContext* reference) {
+  const ir::ExprPtr named = lower_reference(reference);
+  const auto* use = std::get_if<ir::NameUse>(&named->node);
+  if (!use || !use->has_arguments) return -1;
+  const auto index = use->arguments.size() == 1 ? ir::constant_value(*use->arguments[0]) : std::nullopt;
+  if (index && *index >= 0 && *index < bytecode::kMCount) return static_cast<std::int32_t>(*index);
+  diagnostics_.error("PM3004", span_of(reference), "the index of the pointer that is defined is a constant");
+  return -1;
+}
+
 void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
   const source::Span span = span_of(online);
   P::PointerTargetContext* target = online->pointedAt() ? online->pointedAt()->pointerTarget() : nullptr;
@@ -278,7 +288,7 @@ void Lowering::lower_pointer_command(P::OnlineContext* online, ir::Body& out) {
     if (count > 1 && !target->STAR()) diagnostics_.error("PM3012", span, "a range of pointers can only be made self-referenced: ->*");
     return out.push_back(lower_pointer(target, span, definition));
   }
-  definition.first_m = definition.last_m = -1;
+  definition.first_m = definition.last_m = index_of_pointer(online->reference());
   ir::StmtPtr statement = lower_pointer(target, span, definition);
   auto& node = std::get<ir::DefinePointer>(statement->node);
   node.name = online->reference()->NAME() ? text_of(token_of(online->reference()->NAME())) : std::string();

@@ -58,11 +58,21 @@ void Lowering::lower_statements(const std::vector<P::StatementContext*>& stateme
   for (P::StatementContext* statement : statements) lower_statement(statement, out);
 }
 
+/// A misspelt control word that the token pass took for what was meant.
+void Lowering::check_control_word(const antlr4::Token* word) {
+  const std::size_t type = word->getType();
+  const std::string_view meant = type == P::IF ? "if" : type == P::WHILE ? "while" : type == P::SWITCH ? "switch" : "";
+  const std::string text = text_of(word);
+  if (meant.empty() || lower_case(text) == meant) return;
+  diagnostics_.error("PM2008", span_of(word), fmt::format("unknown word '{}'; did you mean '{}'?", text, meant)).fix = source::FixIt{span_of(word), std::string(meant)};
+}
+
 void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (!statement || statement->exception) return;
   const source::Span span = span_of(statement);
   if (in_rotary_) check_rotary(statement);
   if (auto* block = statement->block()) return out.push_back(lower_block(block));
+  check_control_word(statement->start);
   if (auto* branch = statement->ifStatement()) return out.push_back(lower_if(branch));
   if (auto* loop = statement->whileStatement()) {
     ir::ExprPtr condition = lower_condition(loop->condition());

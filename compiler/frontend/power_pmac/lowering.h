@@ -36,6 +36,7 @@ class Lowering {
 
   // statements (lower_statement.cpp)
   void lower_statement(P::StatementContext* statement, ir::Body& out);
+  void check_control_word(const antlr4::Token* word);
   void lower_statements(const std::vector<P::StatementContext*>& statements, ir::Body& out);
   ir::StmtPtr lower_body(P::BodyContext* body);
   ir::StmtPtr lower_block(P::BlockContext* block);
@@ -107,6 +108,7 @@ class Lowering {
   void lower_axis_definition(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_command(P::OnlineContext* online, ir::Body& out);
   void lower_pointer_query(P::OnlineContext* online, ir::Body& out);
+  std::int32_t index_of_pointer(P::ReferenceContext* reference);
   void lower_command(std::string_view word, source::Span span, ir::Body& out);
   // what the load stream asks (lower_query.cpp)
   void lower_alias_query(P::OnlineContext* online, ir::Body& out);

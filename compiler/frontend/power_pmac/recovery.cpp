@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/frontend/power_pmac/syntax_tree.h"
 
 namespace pmac::compiler::power_pmac {

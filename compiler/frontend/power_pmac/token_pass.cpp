@@ -7,9 +7,14 @@
 //   - the words of normal and pset get types of their own, so does the letter of ->*i.16;
 //   - & between operands becomes BIT_AND; elsewhere it addresses a coordinate system or a variable;
 //   - an else that an if follows becomes ELSE_IF;
+//   - a misspelt if, while or switch in front of ( ... ) { becomes that, and is refused by name later;
 //   - an operator that begins a line, outside parentheses and not after another operator, is no binary operator: & addresses a
 //     coordinate system, < > % are commands, everything else cannot stand there; nor can a parenthesis, except behind if and its kind.
+#include <algorithm>
+#include <cctype>
+
 #include "compiler/frontend/power_pmac/syntax_tree.h"
+#include "compiler/source/source.h"
 
 namespace pmac::compiler::power_pmac {
 namespace {
@@ -60,6 +65,7 @@ class TokenPass {
     end_line(type, new_line);
     if (is_self_format(new_line)) set_type(T::SELF_FORMAT);
     if (type == T::ELSE && at_ + 1 < in_.size() && in_[at_ + 1]->getType() == T::IF) set_type(T::ELSE_IF);
+    if (type == T::NAME && in_buffer_ && depth_ == 0 && !operand_wanted_) mend_control_word();
     if (type == T::OPEN) in_buffer_ = true;
     if (type == T::CLOSE) in_buffer_ = false;
     if (at_once_line_ != 0 && in_[at_]->getLine() != at_once_line_) in_buffer_ = false, at_once_line_ = 0;
@@ -76,6 +82,22 @@ class TokenPass {
     const bool is_other = in_[at_]->getType() == T::OTHER;
     if (!is_other && (type == T::LEFT || type == T::LEFT_BRACKET)) ++depth_;
     if ((type == T::RIGHT || type == T::RIGHT_BRACKET) && depth_ > 0) --depth_;
+  }
+
+  /// whiel (P1 < 5) {: nothing but a control statement goes on with a block.
+  void mend_control_word() {
+    std::size_t next = at_ + 1;
+    const auto type = [&](std::size_t i) { return i < in_.size() ? in_[i]->getType() : antlr4::Token::EOF; };
+    if (type(next) != T::LEFT) return;
+    int depth = 0;
+    do {
+      depth += type(next) == T::LEFT ? 1 : type(next) == T::RIGHT ? -1 : 0;
+    } while (next++ < in_.size() && depth > 0 && ends_not(type(next)));
+    if (depth != 0 || type(next) != T::LEFT_BRACE) return;
+    std::string word = in_[at_]->getText();
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string_view near = source::nearest_word(word, {"if", "while", "switch"});
+    if (!near.empty()) set_type(near == "if" ? T::IF : near == "while" ? T::WHILE : T::SWITCH);
   }
 
   /// The i of ->*i.16, glued to the *.

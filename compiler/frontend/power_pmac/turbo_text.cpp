@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/frontend/power_pmac/word_lexer.h"
 
 namespace pmac::compiler::power_pmac {

@@ -1,3 +1,4 @@
+#include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/frontend/power_pmac/word_lexer.h"
 
 #include <algorithm>
@@ -126,8 +127,9 @@ WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, st
   const Word whole_name{T::NAME, word.size()};
   const bool is_rest = begin < split_end_;
   if (last_[0] == T::DOT) return {T::MEMBER, word.size()};  // behind a dot
-  const bool closes_all = (last_[0] == T::CLOSE && lower(word) == "all") || (last_[0] == T::ALL && lower(word) == "buffers");
-  if (closes_all && line == last_line_) return {T::ALL, word.size()};  // close all buffers
+  const bool after_verb = last_[0] == T::CLOSE || last_[0] == T::CLEAR;
+  const bool all_of_them = (after_verb && lower(word) == "all") || (last_[0] == T::ALL && lower(word) == "buffers");
+  if (all_of_them && line == last_line_) return {T::ALL, word.size()};  // close all buffers, clear all buffers
   if (program_length_ > 0 && begin == program_begin_) return {T::NAME, program_length_};
   if (axis_definition_) {
     const std::size_t kind = axis_definition_type(word.substr(0, run_length(word)));
@@ -212,6 +214,7 @@ std::size_t WordLexer::exponent_length(std::size_t at) const {
 /// The first run of a word whose every run of letters is a keyword, a letter or an axis; kind 0 otherwise.
 WordLexer::Word WordLexer::split(std::string_view word, std::size_t begin) const {
   Word first{0, 0};
+  if (word.size() > kMaxWord) return first;
   for (std::size_t at = 0; at < word.size();) {
     const std::size_t length = run_length(word.substr(at));
     const bool digit_follows = at + length < word.size();

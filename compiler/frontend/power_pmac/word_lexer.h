@@ -22,6 +22,9 @@ struct DeclaredNames {
   bool contains(std::string_view name) const { return global.contains(name) || local.contains(name); }
 };
 
+/// Longest word; a longer one is not cut into its parts, which costs time with the square of its length, and is refused.
+inline constexpr std::size_t kMaxWord = 1000;
+
 class WordLexer : public grammar::PowerPmacLexer {
  public:
   /// text: what input holds. names: extended by the declarations that the lexer meets.
@@ -69,8 +72,6 @@ class WordLexer : public grammar::PowerPmacLexer {
   std::size_t program_begin_ = 0, program_length_ = 0;  // of the name in bMain
 };
 
-/// Names of the keywords that buffers know, for suggestions.
-const std::vector<std::string_view>& keyword_names();
 /// Name of a token type as the user writes it: 'while', ')', a number, a name.
 std::string describe_token(std::size_t type);
 /// Name of a token type in the grammar, or empty for operators.

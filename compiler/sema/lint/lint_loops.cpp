@@ -20,10 +20,12 @@ using ir::VariableClass;
 
 bool is_kinematic(const ir::Buffer& buffer) { return buffer.kind == ProgramKind::kForward || buffer.kind == ProgramKind::kInverse; }
 
+/// Also a comparison of constants, as in while (DEBUG == 1).
 bool is_always_true(const Loop& loop) {
   if (!loop.condition) return true;
-  const auto value = ir::constant_value(*loop.condition);
-  return value && *value != 0;
+  if (const auto value = ir::constant_value(*loop.condition)) return *value != 0;
+  const Needs needs = needs_of(*loop.condition);
+  return !needs.unknown && needs.variables.empty() && needs.elements.empty();
 }
 
 bool is_never_true(const Loop& loop) {

@@ -52,8 +52,16 @@ void lint_names(const std::vector<ir::Unit>& units, const Project& project, sour
                                                                          variable->variable_class == ir::VariableClass::kQ ? kFirstCsGlobal : kFirstGlobal));
     if (owner->second->span.valid()) warning.notes.push_back({owner->second->span, "declared here"});
   };
+  const auto look_at_pointer = [&](const ir::Stmt& statement) {
+    const auto* pointer = std::get_if<ir::DefinePointer>(&statement.node);
+    if (!pointer || !pointer->name.empty() || !pointer->definition.name.empty() || pointer->definition.first_m != pointer->definition.last_m) return;
+    const auto* owner = taken.find(ir::VariableClass::kM, pointer->definition.first_m);
+    if (!owner || !reported.insert({ir::VariableClass::kM, pointer->definition.first_m}).second) return;
+    auto& warning = diagnostics.warning("PM7002", statement.span, fmt::format("M{} is the number of '{}'; use the name, or a number below {}", pointer->definition.first_m, owner->first, kFirstPointer));
+    if (owner->second->span.valid()) warning.notes.push_back({owner->second->span, "declared here"});
+  };
   for (const ir::Unit& unit : units) {
-    ir::walk(unit.load, {{}, look});
+    ir::walk(unit.load, {look_at_pointer, look});
     for (const ir::Buffer& buffer : unit.buffers) ir::walk(buffer.body, {{}, look});
   }
 }

@@ -34,6 +34,7 @@ TEST_CASE("nesting that people write compiles", "[limits]") {
   CHECK(compiles("P1 = 1" + repeat(" + P2", 500)));
   CHECK(compiles(repeat("if (P1) X1\n", 2000)));
   CHECK(compiles(repeat("while (P1) { X1 }\n", 2000)));
+  CHECK(compiles(repeat("X1Y2", 100)));
 }
 
 TEST_CASE("nesting beyond the limits is refused by name", "[limits]") {
@@ -48,6 +49,8 @@ TEST_CASE("nesting beyond the limits is refused by name", "[limits]") {
   CHECK(code_of(repeat("do ", 100000) + "X1") == "PM2010");
   CHECK(code_of("if (P1) X1 " + repeat("else if (P2) X2\n", 100000)) == "PM2010");
   CHECK(code_of("Motor" + repeat("[P1", 100000)) == "PM2010");
+  CHECK(code_of(repeat("X1Y2", 100000)) == "PM2010");
+  CHECK(code_of("P1 = Motor[1]." + repeat("a", 100000)) == "PM2010");
 }
 
 TEST_CASE("many errors do not take long and stop at the limit", "[limits]") {

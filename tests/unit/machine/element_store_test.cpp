@@ -67,7 +67,7 @@ TEST_CASE("what is saved is what was assigned, in the order of the table", "[ele
   CHECK(store.saved().empty());
   store.assign({ElementId::kMotorAdcMask, {1, 0, 0}}, 1);
   store.assign({ElementId::kMotorJogSpeed, {2, 0, 0}}, 20);
-  store.assign({ElementId::kMotorJogSpeed, {3, 0, 0}}, 32);       // its default
+  store.assign({ElementId::kMotorJogSpeed, {3, 0, 0}}, 32);       // its default: a load of it sets it all the same
   store.assign({ElementId::kSysCdTimer, {3, 0, 0}}, 100);         // not a saved element
   const auto saved = store.saved();
   REQUIRE(saved.size() == 3);

@@ -107,6 +107,21 @@ TEST_CASE("kinematic programs: out of reach is the routine's ErrorStatus", "[pro
   }
 }
 
+TEST_CASE("six-axis program: the flange turns by 300 degrees without a jump, by script and by the stock robot", "[programs]") {
+  std::string text = test::read_program("kinematics/six_axis.pmc");
+  text = text.substr(0, text.find("open prog 1")) + "open prog 1\nabs;\nlinear F300 ta100 ts50;\nC150;\nC300 X800;\ndwell 0;\nclose\n";
+  for (const bool stock : {false, true}) {
+    ProgramBench bench("six_axis.pmc", text);
+    if (stock) bench.machine->set_robot(1, kinematics::test::standard_robot("six_axis"), {1.0});
+    bench.run("&1 b1r");
+    REQUIRE(bench.faults.empty());
+    double worst_step = 0;
+    for (std::size_t k = 1; k < bench.motor_mu.size(); ++k) worst_step = std::max(worst_step, difference(bench.motor_mu[k - 1], bench.motor_mu[k]));
+    CHECK(worst_step < 0.05);                                             // 30 degrees/s are 0.013 a servo cycle
+    CHECK(std::abs(bench.motor(6).final_mu) == Approx(300).margin(1e-6));  // the flange looks down: joint 6 turns as C does
+  }
+}
+
 TEST_CASE("five-axis programs: while rotary axes alone move the tip stands still at servo rate", "[programs]") {
   struct Tip { const char* program; std::size_t first_move, last_move; };
   for (const Tip& tip : {Tip{"five_axis_head", 0, 1}, Tip{"five_axis_table", 1, 1}, Tip{"five_axis_head_table", 1, 1}}) {

@@ -124,6 +124,29 @@ TEST_CASE("what is wrong inside of a project is reported with its line", "[proje
   }
 }
 
+TEST_CASE("misspelt sections and elements of a project are said", "[project]") {
+  const ProjectFolder folder;
+  folder.write("a.pmc", "P1 = 1\n");
+  folder.write("pp_proj.ini", "[CPU_AFFINITY]\nrtitask=2\n[PMAC_PROGRAM]\nfile1=b.pmc\n[PMAC_PROGRAMS]\nPVARSTRAT=5\nfile1=a.pmc\nlast_file_number=1\n[Whatever]\n[open\n");
+  const ReadProject ini(folder.path("pp_proj.ini"));
+  CHECK(ini.messages().find("pp_proj.ini:3:1: warning: [PMAC_PROGRAM] is no section that the IDE writes, and is not read; did you mean [PMAC_PROGRAMS]?") != std::string::npos);
+  CHECK(ini.messages().find("pp_proj.ini:6:1: warning: 'PVARSTRAT' is no setting of [PMAC_PROGRAMS]") != std::string::npos);
+  CHECK(ini.messages().find("pp_proj.ini:9:1: warning: [Whatever] is no section that the IDE writes, and is not read") != std::string::npos);
+  CHECK(ini.messages().find("pp_proj.ini:10:1: warning: a section is a name in square brackets") != std::string::npos);
+  CHECK(ini.messages().find("CPU_AFFINITY") == std::string::npos);
+
+  folder.write("PMAC Script Language/Libraries/b.pmc", "P1 = 1\n");
+  folder.write("x.ppproj",
+               "<Project>\n<PropertyGroup><PVARSTART>9000</PVARSTART>\n<QVarStrat>5</QVarStrat>\n<FTPPort>21</FTPPort></PropertyGroup>\n<ItemGroup>\n"
+               "<Content Include=\"PMAC Script Language\\Libraries\\b.pmc\"/>\n<Content Include=\"elsewhere\\c.pmc\"/></ItemGroup>\n<ItemGrop/></Project>\n");
+  const ReadProject project(folder.path("x.ppproj"));
+  CHECK(project.project.starts.p == 9000);
+  CHECK(project.messages().find("x.ppproj:3:2: warning: <QVarStrat> is not read; did you mean <QVarStart>?") != std::string::npos);
+  CHECK(project.messages().find("warning: \"elsewhere/c.pmc\" lies in none of the script folders of a project and is not loaded") != std::string::npos);
+  CHECK(project.messages().find("warning: <ItemGrop> is not read; did you mean <ItemGroup>?") != std::string::npos);
+  CHECK(project.diagnostics.warning_count() == 3);
+}
+
 TEST_CASE("what is no project is refused", "[project]") {
   const ProjectFolder folder;
   folder.write("notes.txt", "");
