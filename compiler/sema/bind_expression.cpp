@@ -230,7 +230,8 @@ void Binder::report_unknown_element(const ir::Element& element, const source::Sp
     diagnostics_.error("PM3052", span, fmt::format("'{}' is an array; its index stands in round brackets: {}(...)", structure, structure));
     return;
   }
-  if (!project_.reported_elements.insert(lower(element.pattern)).second) return;
+  const bool reported = !project_.reported_elements.insert(lower(element.pattern)).second;
+  if (reported && diagnostics_.has_errors()) return;  // once a compilation; a later command line is refused for itself
   std::vector<std::string_view> candidates;
   for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) candidates.push_back(bytecode::element_info(static_cast<bytecode::ElementId>(i)).name);
   const source::Guess near = source::guess_word(element.pattern, candidates);

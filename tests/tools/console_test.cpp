@@ -171,6 +171,13 @@ TEST_CASE("console: list takes its operand and no more", "[tools]") {
   CHECK(r[8].empty());
 }
 
+TEST_CASE("console: an unknown element is refused every time", "[tools]") {
+  const Workspace w;
+  const auto r = session(w, "Motor[1].Foo\nMotor[2].Foo=1 Motor[3].Foo\nP1=Motor[1].Foo\n");
+  REQUIRE(r.size() == 3);
+  for (std::size_t line = 0; line < r.size(); ++line) CHECK(r[line].find("error #20: ILLEGAL CMD: unknown element Motor[].Foo") != std::string::npos);
+}
+
 TEST_CASE("console: no input ends it by a crash", "[tools]") {
   const Workspace w;
   std::string input;
