@@ -226,6 +226,8 @@ ir::StmtPtr Lowering::lower_call(P::SimpleStatementContext* statement) {
 
 void Lowering::lower_declaration(P::DeclarationContext* declaration, ir::Body& out) {
   const source::Span span = span_of(declaration);
+  if (!online_ && !declaration->pointerDeclarator().empty())
+    return void(diagnostics_.error("PM2013", span, "pointers are defined outside of program buffers; write ptr before open"));
   for (P::PointerDeclaratorContext* pointer : declaration->pointerDeclarator()) {
     bytecode::PointerDefinition definition;
     definition.first_m = definition.last_m = -1;
