@@ -271,9 +271,10 @@ void add_instruction(std::string& out, const Module& module, const Program& prog
 void add_move_run(std::string& out, const Module& module, std::size_t number) {
   const MoveRun& run = module.move_runs[number];
   out += "move run " + std::to_string(number) + ": " + std::to_string(run.row_count()) + " rows\n";
-  for (std::size_t row = 0; row < run.row_count(); ++row) {
+  const std::size_t rows = std::min({run.row_count(), run.column.size(), std::max<std::size_t>(run.first_word.size(), 1) - 1});
+  for (std::size_t row = 0; row < rows; ++row) {
     std::string line = right_aligned(std::to_string(row), 6) + " ";
-    for (std::size_t i = run.first_word[row]; i < run.first_word[row + 1]; ++i)
+    for (std::size_t i = run.first_word[row]; i < std::min<std::size_t>(run.first_word[row + 1], std::min(run.words.size(), run.values.size())); ++i)
       line += " " + word_name(move_word_kind(run.words[i]), move_word_index(run.words[i])) + " " + number_text(run.values[i]);
     out += padded(line, kSourceColumn) + "  ; " + to_string(module, run.source(row)) + "\n";
   }

@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "compiler/bytecode/chunk.h"
+#include "runtime/gather/crc32.h"
 
 namespace pmac::runtime {
 namespace {
@@ -152,7 +152,7 @@ std::span<const std::uint8_t> NpzWriter::spilled(std::uint64_t block, std::size_
 
 std::uint32_t NpzWriter::copy_column(std::size_t column, std::uint32_t crc) {
   const auto copy = [&](std::span<const std::uint8_t> bytes) {
-    crc = bytecode::crc32(bytes, crc);
+    crc = zip_crc32(bytes, crc);
     file_.write(bytes);
   };
   for (std::uint64_t block = 0; block < spilled_blocks_; ++block) copy(spilled(block, column));
@@ -166,7 +166,7 @@ Entry NpzWriter::write_column(std::size_t column) {
   Entry entry{columns_[column] + ".npy", file_.size(), header.bytes.size() + rows * sizeof(double), 0};
   file_.write(local_header(entry).bytes);
   file_.write(header.bytes);
-  entry.crc = copy_column(column, bytecode::crc32(header.bytes));
+  entry.crc = copy_column(column, zip_crc32(header.bytes));
   file_.patch(entry.offset + kCrcOffset, Record().u32(entry.crc).bytes);
   return entry;
 }

@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "compiler/bytecode/chunk.h"
+#include "runtime/gather/crc32.h"
 #include "tests/unit/gather/scratch_folder.h"
 
 using namespace pmac::test;
@@ -48,7 +48,7 @@ std::map<std::string, std::vector<double>> read_npz(const std::string& bytes) {
     REQUIRE(little_endian(bytes, local, 4) == 0x04034b50);
     CHECK(little_endian(bytes, local + 14, 4) == crc);
     const std::string array = bytes.substr(local + 30 + name_size + 20, size);
-    CHECK(bytecode::crc32({reinterpret_cast<const std::uint8_t*>(array.data()), array.size()}) == crc);
+    CHECK(zip_crc32({reinterpret_cast<const std::uint8_t*>(array.data()), array.size()}) == crc);
     const std::size_t header = 10 + little_endian(array, 8, 2);
     CHECK(array.substr(0, 6) == "\x93NUMPY");
     CHECK(header % 64 == 0);
@@ -66,7 +66,7 @@ std::map<std::string, std::vector<double>> read_npz(const std::string& bytes) {
 
 TEST_CASE("checksum of archives: the check value of CRC-32", "[gather]") {
   const std::string text = "123456789";
-  CHECK(bytecode::crc32({reinterpret_cast<const std::uint8_t*>(text.data()), 9}) == 0xcbf43926u);
+  CHECK(zip_crc32({reinterpret_cast<const std::uint8_t*>(text.data()), 9}) == 0xcbf43926u);
 }
 
 TEST_CASE("tables: the format is chosen by the ending", "[gather]") {
