@@ -11,7 +11,7 @@ constexpr double kSameInstantS = 1e-9;
 }  // namespace
 
 Card::Card(CardConfig config)
-    : config_(std::move(config)), relays_(config_.relays), position_(static_cast<double>(config_.start_pulses)), commanded_(config_.start_pulses) {}
+    : config_(std::move(config)), own_parameters_(config_.parameter_count), parameters_(own_parameters_), relays_(config_.relays), position_(static_cast<double>(config_.start_pulses)), commanded_(config_.start_pulses) {}
 
 bool Card::relay(int number) const {
   if (number == config_.busy_relay) return moves();
@@ -30,6 +30,26 @@ std::optional<Finding> Card::request(const MoveRequest& request) {
   if (auto refusal = refusal_of(request, commanded_)) return refusal;
   waiting_ = request;
   return std::nullopt;
+}
+
+std::optional<Finding> Card::request(const MoveBlock& block, const Place& place) {
+  if (block.wide_velocity && !config_.wide_velocity)
+    return Finding{DiagnosticId::kBadBlock, "velocities of 24 bits need executive version 4.x; set VERSION=4"};
+  if (block.velocity) rates.vel = *block.velocity;
+  if (parameters_.size() > kEndPointParameter) {
+    parameters_[kMasterLengthParameter] = block.master_distance;
+    if (block.is_circle) parameters_[kEndPointParameter] = block.end_point;
+  }
+  MoveRequest move;
+  move.kind = block.is_circle ? MoveKind::kCircle : block.incremental ? MoveKind::kMoveBy : MoveKind::kMoveTo;
+  move.distance = block.distance;
+  if (block.is_circle) move.circle = circle_of(block);
+  move.end_point = block.end_point;
+  move.end_point_is_relative = block.incremental;
+  move.master_length = block.master_distance;
+  move.rates = rates;
+  move.place = place;
+  return request(move);
 }
 
 MoveEntry Card::entry_at(double time_s) const {
@@ -66,6 +86,10 @@ void Card::stop_dead(double time_s) {
   commanded_ = static_cast<std::int64_t>(position_);
   active_.reset();
   carried_.reset();
+}
+
+MotionPoint Card::path_at(double time_s) const {
+  return active_ ? acr1000::path_at(*active_, time_s) : MotionPoint{position_, 0, 0, 0};
 }
 
 MotionPoint Card::at(double time_s) const {

@@ -8,6 +8,9 @@
 
 namespace pmac::acr1000 {
 
+/// Parameters that motion commands read.
+inline constexpr std::size_t kMasterLengthParameter = 28, kEndPointParameter = 29;
+
 enum class MoveKind : std::uint8_t { kMoveTo, kMoveBy, kCircle };
 
 struct MoveRequest {

@@ -44,6 +44,11 @@ bool turns_back(const PlannedMove& move, const MoveEntry& entry) {
   return entry.axis_speed_pulses_s * (move.law.end_pulses - move.law.start_pulses) < 0;
 }
 
+MotionPoint point_of(const AxisPoint& axis, const MasterPoint& master, double length) {
+  const double rate = master.speed_pulses_s / length;
+  return {axis.position_pulses, axis.d1 * rate, axis.d2 * rate * rate + axis.d1 * master.accel_pulses_s2 / length, master.distance_pulses};
+}
+
 }  // namespace
 
 std::int64_t end_of(const MoveRequest& request, std::int64_t start_pulses) {
@@ -98,9 +103,18 @@ MotionPoint at(const PlannedMove& move, double time_s) {
   const MasterPoint master = at(move.profile, time_s - move.start_s);
   const double length = move.profile.length_pulses;
   if (length <= 0 || time_s - move.start_s >= move.profile.duration_s) return {move.law.end_pulses, 0, 0, length};
-  const AxisPoint axis = at(move.law, master.distance_pulses / length);
-  const double rate = master.speed_pulses_s / length;
-  return {axis.position_pulses, axis.d1 * rate, axis.d2 * rate * rate + axis.d1 * master.accel_pulses_s2 / length, master.distance_pulses};
+  return point_of(at(move.law, master.distance_pulses / length), master, length);
+}
+
+MotionPoint path_at(const PlannedMove& move, double time_s) {
+  const double length = move.profile.length_pulses;
+  if (length <= 0) return {move.law.end_pulses, 0, 0, 0};
+  const MasterPoint master = at(move.profile, time_s - move.start_s);
+  const double u = master.distance_pulses / length, beside = move.law.end_pulses - computed_end_pulses(move.law);
+  AxisPoint axis = at(move.law, u);
+  axis.position_pulses = u >= 1 ? move.law.end_pulses : axis.position_pulses + beside * u;
+  axis.d1 += beside;
+  return point_of(axis, master, length);
 }
 
 }  // namespace pmac::acr1000

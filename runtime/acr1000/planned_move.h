@@ -47,4 +47,8 @@ std::vector<Finding> oddities_of(const PlannedMove& move, const MoveEntry& entry
 /// time_s: of the system; before the start as at it, after the end the axis stands.
 MotionPoint at(const PlannedMove& move, double time_s);
 
+/// The same as a path without steps: speeds at the end are those just before it, and what a CIRCLE comes beside its P29, a part of a
+/// pulse if its numbers are right, is spread over the whole of it.
+MotionPoint path_at(const PlannedMove& move, double time_s);
+
 }  // namespace pmac::acr1000
