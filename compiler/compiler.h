@@ -41,6 +41,8 @@ struct Options {
   std::vector<std::string> include_dirs;
   std::vector<std::pair<std::string, std::string>> defines;  // -D name[=text]
   source::WarningOptions warnings;                           // -W...
+  int max_include_depth = 64;                                // of #include in #include
+  bool plain_move_fast_path = true;                          // false: every line goes through the grammar
 };
 
 class Session {
@@ -51,7 +53,7 @@ class Session {
 
   /// Compiles the files in order into one module. nullopt when there are errors; diagnostics() has all of them.
   /// Names stay known for later calls.
-  std::optional<bytecode::Module> compile(const std::vector<InputFile>& files);
+  std::optional<bytecode::Module> compile(std::vector<InputFile> files);
 
   /// ACR1000: a line that is typed at a card. RUN, LIST and their kind are left to the card, which keeps the program.
   /// Power PMAC: compiles a line of on-line commands (also: open ... close) as one load script. `name` is shown as the file,

@@ -27,6 +27,7 @@ void declare_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("-I", arguments.include_dirs, "look for #include files in this folder too")->type_name("DIR")->allow_extra_args(false);
   app.add_option("--dialect", arguments.dialect, "language of the files; without it, .acr files are the ACR1000's")->check(CLI::IsMember({"power-pmac", "acr1000"}))->type_name("NAME");
   app.add_option("--card", arguments.card_settings, "a setting of the ACR1000 system that no file changes, as VERSION=4")->type_name("KEY=VALUE")->allow_extra_args(false);
+  app.add_option("--max-include-depth", arguments.max_include_depth, "give up at #include nested so deep")->type_name("N")->check(CLI::Range(1, 200))->capture_default_str();
   app.add_option("-D", arguments.defines, "define a macro before the first file")->type_name("NAME[=TEXT]")->allow_extra_args(false);
 }
 
@@ -80,6 +81,7 @@ compiler::Options compiler_options(const Arguments& arguments) {
   options.dialect = dialect_of(arguments);
   options.card_settings = arguments.card_settings;
   options.include_dirs = arguments.include_dirs;
+  options.max_include_depth = arguments.max_include_depth;
   for (const std::string& define : arguments.defines) {
     const std::size_t equals = define.find('=');
     options.defines.emplace_back(define.substr(0, equals), equals == std::string::npos ? "" : define.substr(equals + 1));
