@@ -32,6 +32,9 @@ struct RunOptions {
   double max_time_s = 3600;
   std::uint64_t max_instructions = 20'000'000'000;
   std::string record, gather;
+  std::string trace;                                          // a file, or - for standard output
+  bool trace_instructions = false;
+  std::uint64_t trace_limit = 1'000'000;                      // records
   std::vector<std::string> plots;
   std::string emit;
   bool stats = false, check_limits = false, quiet = false;
