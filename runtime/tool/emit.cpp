@@ -1,6 +1,7 @@
 #include "runtime/tool/emit.h"
 
 #include <cstdio>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -32,8 +33,12 @@ void Emitter::attach(runtime::Machine& machine, Recorder& recorder) {
     recorder.add_sink({[](const std::vector<std::string>& names) { std::printf("%s\n", fmt::format("{}", fmt::join(names, " ")).c_str()); },
                        [&recorder](std::span<const double> rows) {
                          const std::size_t width = recorder.width();
-                         for (std::size_t i = 0; i < rows.size(); i += width)
-                           std::printf("%s\n", fmt::format("{}", fmt::join(rows.subspan(i, width), " ")).c_str());
+                         fmt::memory_buffer text;
+                         for (std::size_t i = 0; i < rows.size() && std::ferror(stdout) == 0; i += width) {
+                           for (std::size_t k = 0; k < width; ++k) fmt::format_to(std::back_inserter(text), "{}{}", rows[i + k], k + 1 == width ? '\n' : ' ');
+                           std::fwrite(text.data(), 1, text.size(), stdout);
+                           text.clear();
+                         }
                        }});
     return;
   }

@@ -23,7 +23,7 @@ struct RowSink {
 /// has its column from the start.
 class Recorder : public runtime::SampleSink {
  public:
-  static constexpr std::size_t kHeldValues = 4'000'000;
+  static constexpr std::size_t kHeldValues = 500'000;
 
   explicit Recorder(runtime::Machine& machine) : machine_(machine) {}
   void add_sink(RowSink sink) { sinks_.push_back(std::move(sink)); }
