@@ -41,7 +41,7 @@ RunEnd run_events(Machine::State& s, const RunLimits& limits) {
   const double stop_ms = std::min(limits.until_ms.value_or(limits.max_ms), limits.max_ms);
   double next_progress_ms = kProgressMs;
   s.sample_to(s.now_ms);
-  for (;;) {
+  for (std::uint64_t event = 0;; ++event) {
     s.service(s.now_ms);
     s.update_idle(s.now_ms);
     const double idle_end_ms = s.is_idle && !limits.until_ms ? s.idle_since_ms + limits.idle_ms : kNever;
@@ -49,6 +49,7 @@ RunEnd run_events(Machine::State& s, const RunLimits& limits) {
     if (s.now_ms >= stop_ms) return limits.until_ms && *limits.until_ms <= limits.max_ms ? RunEnd::kUntil : RunEnd::kTimeLimit;
     if (s.instructions > s.options.max_instructions) return RunEnd::kBudget;
     if (interruption_wanted()) return RunEnd::kInterrupted;
+    if (limits.over_budget && event % 256 == 0 && limits.over_budget()) return RunEnd::kBudget;
     if (s.now_ms >= next_progress_ms) {
       if (s.options.observers.progress) s.options.observers.progress(s.now_ms);
       next_progress_ms = s.now_ms + kProgressMs;
