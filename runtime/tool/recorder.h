@@ -42,6 +42,7 @@ class Recorder : public runtime::SampleSink {
   struct AxisColumn { int coord; int axis; };
   void take_new_motors(std::span<const int> motors);
   void fix_columns();
+  void emit_held();
   void emit(std::span<const double> motor_rows, std::size_t count);
 
   runtime::Machine& machine_;
