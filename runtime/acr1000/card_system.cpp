@@ -115,7 +115,7 @@ ProgramState CardSystem::state_of(const Seat& seat) const {
   const Card& card = *seat.card;
   const CardDriver& driver = *card.driver;
   const std::span<const double> parameters = driver.parameters();
-  return {driver.place(), driver.nesting(), driver.outputs(), card.rates, {parameters.begin(), parameters.end()}, card.relays(), card.moves(), driver.program_runs()};
+  return {driver.place(), driver.position(), driver.nesting(), driver.outputs(), card.rates, {parameters.begin(), parameters.end()}, card.relays(), card.moves(), driver.program_runs()};
 }
 
 std::vector<std::size_t> CardSystem::endless_loops() const {
