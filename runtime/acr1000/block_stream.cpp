@@ -9,7 +9,7 @@ namespace pmac::acr1000 {
 namespace {
 
 constexpr std::uint8_t kControlL = 0x0c;
-/// Longest command line that is collected.
+/// Longest command line; what follows is another one.
 constexpr std::size_t kMaxLine = 4096;
 
 bool is_line_end(std::uint8_t byte) { return byte == '\r' || byte == '\n'; }
@@ -81,7 +81,8 @@ StreamItem BlockReader::line() {
   for (;;) {
     if (at_ == size_ && !fill()) return item;
     if (is_line_end(buffer_[at_]) || buffer_[at_] == kControlD || buffer_[at_] == kControlL) return item;
-    if (item.line.size() < kMaxLine) item.line += static_cast<char>(buffer_[at_]);
+    if (item.line.size() == kMaxLine) return item;
+    item.line += static_cast<char>(buffer_[at_]);
     skip(1);
   }
 }
