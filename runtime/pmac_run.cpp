@@ -9,6 +9,7 @@
 
 #include "compiler/compiler.h"
 #include "runtime/machine.h"
+#include "runtime/tool/acr_run.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/drive_run.h"
 #include "runtime/tool/emit.h"
@@ -218,6 +219,10 @@ int main(int argc, char** argv) {
       return kExitUsage;
     }
     std::signal(SIGPIPE, SIG_IGN);
+    if (is_card_run(options)) {
+      catch_signals();
+      return run_cards(options, [] { return g_interrupted.load(); });
+    }
     return run(options);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "pmac-run: internal error: %s\n", e.what());
