@@ -279,3 +279,21 @@ TEST_CASE("ACR1000: commands of the host go to one card or to all", "[tools]") {
   CHECK(j["cards"]["Y"]["counter"] == 1);
   CHECK(j["time_s"].get<double>() == Approx(2));
 }
+
+TEST_CASE("ACR1000: random bytes as a stream never crash the run", "[tools]") {
+  const Workspace w;
+  std::uint32_t seed = 5;
+  for (int run = 0; run < 6; ++run) {
+    std::string bytes;
+    for (int k = 0; k < 3000; ++k) {
+      seed = seed * 1664525u + 1013904223u;
+      const char usual[] = "MOV P28=VEL10GSB:IF\r\x04\x0c";
+      bytes += (seed >> 28) < 8 ? usual[(seed >> 8) % (sizeof usual - 1)] : static_cast<char>(seed >> 16);
+    }
+    w.write("noise.x.bin", bytes);
+    const ToolResult r = w.run("pmac-run", "noise.x.bin --json=summary --max-time 100 --max-instructions 1000000");
+    CAPTURE(run);
+    CHECK((r.code == 0 || r.code == 3 || r.code == 4));
+    CHECK_NOTHROW(json::parse(r.out));
+  }
+}
