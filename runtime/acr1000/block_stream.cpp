@@ -120,11 +120,9 @@ std::optional<DriverFault> BlockStreamDriver::take(const StreamItem& item) {
     case StreamItem::Kind::kLine:
       if (actions_.execute) return actions_.execute(item.line);
       return fault_of(item, "ACR-E12", "a stream of blocks holds what is neither a block nor ctrl-L");
-    case StreamItem::Kind::kError: {
+    case StreamItem::Kind::kError:
       ++blocks_;
-      const std::string missing = item.error.bytes_missing > 0 ? fmt::format("; {} bytes are missing", item.error.bytes_missing) : "";
-      return fault_of(item, std::string(row_of(DiagnosticId::kBadBlock).id), fmt::format("{}, at byte {}{}", item.error.detail, item.error.offset, missing));
-    }
+      return fault_of(item, std::string(row_of(DiagnosticId::kBadBlock).id), text_of(item.error));
     case StreamItem::Kind::kBlock: break;
   }
   ++blocks_;

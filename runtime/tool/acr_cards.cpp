@@ -23,8 +23,13 @@ std::string trimmed(const std::string& text) {
 std::optional<std::string> CardStation::send(const std::string& line) {
   auto compiled = compiler_(line);
   if (auto* reason = std::get_if<std::string>(&compiled)) return std::move(*reason);
-  lines_.push_back(std::move(std::get<runtime::ProgramHandle>(compiled)));
-  return std::nullopt;
+  runtime::ProgramHandle commands = std::move(std::get<runtime::ProgramHandle>(compiled));
+  if (!card_.waits()) {
+    lines_.push_back(std::move(commands));
+    return std::nullopt;
+  }
+  const auto fault = processor_.execute_now(std::move(commands));
+  return fault ? std::optional(fault->id + ": " + fault->detail) : std::nullopt;
 }
 
 void CardStation::read_stream(acr1000::ByteSource source, acr1000::Place place) {

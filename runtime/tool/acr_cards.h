@@ -23,7 +23,7 @@ class CardStation : public acr1000::CardDriver {
       : card_(card), print_(std::move(print)), compiler_(std::move(compiler)), processor_(card, print_) {}
 
   void start(runtime::ProgramHandle script) { processor_.start(std::move(script)); }
-  /// A line of the host; refused: the reason.
+  /// A line of the host: executed after those before it; at once where the card waits for a motion to begin. Refused: the reason.
   std::optional<std::string> send(const std::string& line);
   void read_stream(acr1000::ByteSource source, acr1000::Place place);
 
