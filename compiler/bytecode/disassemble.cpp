@@ -266,10 +266,7 @@ void add_table(std::string& out, const char* title, const std::vector<T>& table,
 }
 
 void add_instruction(std::string& out, const Module& module, const Program& program, std::uint32_t pc) {
-  const Instruction& in = program.code[pc];
-  const std::string operands = OperandText(module, program, in).text();
-  std::string line = right_aligned(std::to_string(pc), 6) + "  ";
-  line += operands.empty() ? std::string(opcode_info(in.op).text) : padded(std::string(opcode_info(in.op).text), 14) + operands;
+  std::string line = right_aligned(std::to_string(pc), 6) + "  " + instruction_text(module, program, program.code[pc]);
   const SourceLine source = source_of(program, pc);
   const bool starts_line = pc == 0 || !(source == source_of(program, pc - 1));
   if (starts_line && source.file >= 0) line = padded(line, kSourceColumn) + "  ; " + to_string(module, source);
@@ -311,6 +308,12 @@ void add_program(std::string& out, const Module& module, const Program& program)
 }
 
 }  // namespace
+
+std::string instruction_text(const Module& module, const Program& program, const Instruction& in) {
+  const std::string operands = OperandText(module, program, in).text();
+  const std::string name(opcode_info(in.op).text);
+  return operands.empty() ? name : padded(name, 14) + operands;
+}
 
 std::string disassemble(const Module& module) {
   std::string out;

@@ -40,10 +40,22 @@ enum class Flow {
   kFault,      // host_fault() of the thread says why
 };
 
+/// Looks on while programs execute (--trace). Runs of threads nest: a move line may run a kinematic routine.
+class InstructionWatcher {
+ public:
+  virtual ~InstructionWatcher() = default;
+  /// Before an instruction of thread.program() executes. registers: the frame with its outgoing arguments.
+  virtual void before(const Thread& thread, std::uint32_t pc, std::span<const double> registers) = 0;
+  /// After the last one of a run. registers: empty where the program has ended.
+  virtual void after_run(const Thread& thread, std::span<const double> registers) = 0;
+};
+
 /// Everything that a program reaches outside its own registers.
 class Host {
  public:
   virtual ~Host() = default;
+  /// Who looks on, or nullptr; asked once a run. Programs that are watched must not be fused (fuse.h).
+  virtual InstructionWatcher* watcher() { return nullptr; }
   virtual double read_m(Thread&, int number) = 0;
   virtual void write_m(Thread&, int number, double value) = 0;
   virtual double read_i(Thread&, int number) = 0;
@@ -152,6 +164,7 @@ class Thread {
   std::uint32_t pc_ = 0;
   bool came_to_end_ = false;
   std::int64_t jump_backs_ = 0;
+  bool one_line_ = false;               // run_line() is at work
   std::optional<Fault> host_fault_;
   std::vector<double> format_values_;   // of the next text with a format
 
