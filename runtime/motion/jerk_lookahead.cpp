@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/interruption.h"
+
 namespace pmac::motion {
 namespace {
 
@@ -39,6 +41,7 @@ void JerkLookahead::finish(std::vector<TimedSegment>& out) {
 }
 
 void JerkLookahead::take(PreparedSegment prepared, std::vector<TimedSegment>& out) {
+  runtime::poll_interruption();
   if (path_.empty() && known_ms_ == 0) reached_ms_ = known_ms_ = prepared.segment.start_ms;
   known_ms_ = prepared.segment.start_ms + prepared.segment.duration_ms;
   const Segment rest = prepared.segment;
@@ -53,6 +56,7 @@ void JerkLookahead::take(PreparedSegment prepared, std::vector<TimedSegment>& ou
 
 /// One more cell, or over a stop to what follows. False where more of the path has to be known, or it has ended.
 bool JerkLookahead::go_on(std::vector<TimedSegment>& out) {
+  runtime::poll_interruption();
   if (path_.empty()) return false;
   if (!entered_ || (plan_.is_done() && plan_.ends_at_stop())) return enter_next_stretch(out);
   if ((grew_ || plan_.is_done()) && !plan_.ends_at_stop()) plan_.renew();
