@@ -10,6 +10,7 @@
 #include "compiler/compiler.h"
 #include "runtime/machine.h"
 #include "runtime/tool/console.h"
+#include "runtime/tool/drive_run.h"
 #include "runtime/tool/emit.h"
 #include "runtime/tool/kin_check.h"
 #include "runtime/tool/limit_report.h"
@@ -37,7 +38,7 @@ bool shows_progress(const RunOptions& options) { return !options.quiet && isatty
 
 /// Messages of the machine, as they come: faults and refusals on standard error, answers on standard output.
 runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console,
-                                    runtime::LimitCheck*& excuse) {
+                                    runtime::LimitCheck*& excuse, DriveRun& drive) {
   runtime::MachineObservers o;
   const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
   o.answer = [quiet = options.quiet, answers_to_stderr, &console](const std::string& text) {
@@ -51,7 +52,10 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.warning = [&machine](bytecode::SourceLine source, const std::string& text) {
     std::fprintf(stderr, "%s: warning: %s\n", machine->place(source).c_str(), text.c_str());
   };
-  o.move = [&report](const runtime::MoveRecord& move) { report.add(move); };
+  o.move = [&report, &drive](const runtime::MoveRecord& move) {
+    report.add(move);
+    drive.take(move);
+  };
   o.output = [&report](const runtime::OutputChange& change) { report.add(change); };
   o.jerk_join = [&report, &excuse](const runtime::JerkJoin& join) {
     report.add(join);
@@ -125,6 +129,7 @@ int run(const RunOptions& options) {
   Report report(options.json == JsonDetail::kMoves || options.stats);
   runtime::Machine* place = nullptr;
   runtime::LimitCheck* excuse = nullptr;
+  DriveRun drive(options);
   runtime::MachineOptions machine_options;
   machine_options.fine = options.fine;
   machine_options.ramp_rule = options.ramp_rule;
@@ -137,7 +142,7 @@ int run(const RunOptions& options) {
     const auto typed = file == Console::kName ? console.typed_line(line) : std::nullopt;
     return typed ? typed : lines(file, line);
   };
-  machine_options.observers = observers(options, report, place, console, excuse);
+  machine_options.observers = observers(options, report, place, console, excuse, drive);
   Emitter emitter(options.emit);
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);
@@ -151,7 +156,9 @@ int run(const RunOptions& options) {
   if (options.check_limits) machine.add_sink(&limit_check);
   excuse = &limit_check;
   machine.add_sink(&recorder);
-  emitter.attach(machine, recorder);
+  if (const int code = drive.set_up(machine); code != kExitOk) return code;
+  if (drive.active()) machine.add_sink(&drive);
+  emitter.attach(machine, recorder, drive);
 
   if (const int code = set_robots(options, machine); code != kExitOk) return code;
   if (const int code = load_files(options, session, machine); code != kExitOk) return code;
@@ -171,15 +178,18 @@ int run(const RunOptions& options) {
   if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.console && !options.quiet && exit_code(machine, report, outcome) == kExitOk)
     std::fprintf(stderr, "pmac-run: loaded, and nothing was started; use -e '&1 b1r' to run program 1 in coordinate system 1\n");
   const bool written = outputs.finish();
+  const int drive_code = drive.finish();
   std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() ? stdout : stderr;
   if (options.stats) {
     std::fputs(report.text(machine, outcome, statistics, wall_s).c_str(), out);
     std::fputs(report.move_log(machine).c_str(), out);
     std::fputs(report.output_log(machine).c_str(), out);
+    std::fputs(drive_text(drive).c_str(), out);
   }
   const std::vector<runtime::LimitCheck::Row> limit_rows = limit_check.rows();
   const bool limits_kept = all_keep_limits(limit_rows);
   report.add_limits(limit_rows);
+  report.add_drive(drive);
   if (options.check_limits) std::fputs(limit_text(machine, limit_rows).c_str(), out);
   if (options.json != JsonDetail::kNone) std::fputs(report.json(machine, outcome, statistics, options.json).c_str(), stdout);
   if (std::fflush(stdout) != 0 || !written) {
@@ -187,7 +197,8 @@ int run(const RunOptions& options) {
     return kExitUsage;
   }
   const int code = exit_code(machine, report, outcome);
-  return code == kExitOk && !limits_kept ? kExitFault : code;
+  if (code != kExitOk) return code;
+  return limits_kept ? drive_code : kExitFault;
 }
 
 }  // namespace
@@ -197,6 +208,7 @@ int main(int argc, char** argv) {
     RunOptions options;
     if (const auto code = parse_options(argc, argv, options)) return *code;
     if (options.robots.size() == 1 && options.robots[0] == "list") return list_robots();
+    if (options.drive == "list") return std::fputs(drives::drive_list().c_str(), stdout) < 0 ? kExitUsage : kExitOk;
     if (const std::string file = unknown_ending(options); !file.empty()) {
       std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
       return kExitUsage;

@@ -27,7 +27,7 @@ void Emitter::attach(runtime::MachineObservers& observers) {
   };
 }
 
-void Emitter::attach(runtime::Machine& machine, Recorder& recorder) {
+void Emitter::attach(runtime::Machine& machine, Recorder& recorder, DriveRun& drive) {
   if (stage_ == "servo") {
     recorder.add_sink({[](const std::vector<std::string>& names) { std::printf("%s\n", fmt::format("{}", fmt::join(names, " ")).c_str()); },
                        [&recorder](std::span<const double> rows) {
@@ -35,7 +35,6 @@ void Emitter::attach(runtime::Machine& machine, Recorder& recorder) {
                          for (std::size_t i = 0; i < rows.size(); i += width)
                            std::printf("%s\n", fmt::format("{}", fmt::join(rows.subspan(i, width), " ")).c_str());
                        }});
-    return;
   }
   auto last = std::make_shared<int>(-1);
   for (int coord = 0; coord < bytecode::kMaxCoords; ++coord) {
@@ -48,7 +47,7 @@ void Emitter::attach(runtime::Machine& machine, Recorder& recorder) {
       stages.timed_segment = [coord, last](const motion::TimedSegment& r) {
         print_line(coord, *last, motion::timed_segment_header(), motion::to_text(r));
       };
-    machine.observe_stages(coord, stages);
+    machine.observe_stages(coord, drive.observed(coord, std::move(stages)));
   }
 }
 

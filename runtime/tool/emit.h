@@ -4,16 +4,18 @@
 #include <string>
 
 #include "runtime/machine.h"
+#include "runtime/tool/drive_run.h"
 #include "runtime/tool/recorder.h"
 
 namespace pmac::tool {
 
 class Emitter {
  public:
-  /// stage: empty, commands, path, segments, lookahead or servo.
+  /// stage: empty, commands, path, segments, lookahead, servo, or frames, which the drive prints.
   explicit Emitter(std::string stage) : stage_(std::move(stage)) {}
   void attach(runtime::MachineObservers& observers);
-  void attach(runtime::Machine& machine, Recorder& recorder);
+  /// The observers of the stages, and those of the drive besides.
+  void attach(runtime::Machine& machine, Recorder& recorder, DriveRun& drive);
 
  private:
   std::string stage_;

@@ -43,6 +43,9 @@ struct RunOptions {
   bool limit_jerk = false;
   std::vector<std::string> robots;                            // --kinematics, "1=scara:upper_arm_mm=350"
   KinCheckOptions kin_check;
+  std::string drive;                                          // --drive NAME, and NAME=VALUE after the colon
+  std::vector<std::pair<std::string, std::string>> drive_settings;
+  std::string drive_record;                                   // table of what the simulated drive did
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,

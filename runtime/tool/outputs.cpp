@@ -10,7 +10,7 @@
 namespace pmac::tool {
 
 std::string unknown_ending(const RunOptions& options) {
-  for (const std::string& file : {options.record, options.gather})
+  for (const std::string& file : {options.record, options.gather, options.drive_record})
     if (!file.empty() && !runtime::table_format_of(file)) return file;
   for (const std::string& file : options.plots)
     if (!runtime::plot_format_of(file)) return file;
@@ -18,7 +18,7 @@ std::string unknown_ending(const RunOptions& options) {
 }
 
 std::string clashing_file(const RunOptions& options) {
-  std::vector<std::string> outputs{options.record, options.gather};
+  std::vector<std::string> outputs{options.record, options.gather, options.drive_record};
   outputs.insert(outputs.end(), options.plots.begin(), options.plots.end());
   const auto same = [](const std::string& a, const std::string& b) {
     std::error_code ignored;
