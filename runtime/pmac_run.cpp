@@ -15,6 +15,7 @@
 #include "runtime/tool/kin_check.h"
 #include "runtime/tool/limit_report.h"
 #include "runtime/tool/load.h"
+#include "runtime/tool/mcx_run.h"
 #include "runtime/tool/options.h"
 #include "runtime/tool/outputs.h"
 #include "runtime/tool/recorder.h"
@@ -218,6 +219,7 @@ int main(int argc, char** argv) {
       return kExitUsage;
     }
     std::signal(SIGPIPE, SIG_IGN);
+    if (is_register_script(options)) return run_register_script(options);
     return run(options);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "pmac-run: internal error: %s\n", e.what());

@@ -30,6 +30,7 @@ struct RunOptions {
   std::vector<std::pair<double, std::string>> timed_commands; // --at seconds, text
   std::optional<double> until_s;                              // absent: until idle
   double max_time_s = 3600;
+  bool max_time_given = false;
   std::uint64_t max_instructions = 20'000'000'000;
   std::string record, gather;
   std::vector<std::string> plots;

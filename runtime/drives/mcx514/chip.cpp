@@ -111,6 +111,12 @@ bool Chip::driving() const {
   return interpolation_ != nullptr || std::any_of(single_.begin(), single_.end(), [](const auto& drive) { return drive != nullptr; });
 }
 
+bool Chip::drives_endlessly() const {
+  return std::any_of(single_.begin(), single_.end(), [](const auto& drive) {
+    return drive && (drive->segment.code == code::kCONTP || drive->segment.code == code::kCONTM);
+  });
+}
+
 bool Chip::error_pending() const {
   return std::any_of(axes_->begin(), axes_->end(), [](const Axis& axis) { return axis.status != 0; });
 }

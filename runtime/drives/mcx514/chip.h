@@ -31,8 +31,8 @@ struct Place { int line = 0; int column = 1; };
 class PulseSink {
  public:
   virtual ~PulseSink() = default;
-  /// One event. position: logical positions after it.
-  virtual void pulses(Time time, const Event& event, const AxisCounts& position) = 0;
+  /// One event. position: logical positions after it. by: what made it, for its error_now().
+  virtual void pulses(Time time, const Event& event, const AxisCounts& position, const Interpolator& by) = 0;
 };
 
 /// What became of one drive command.
@@ -83,6 +83,8 @@ class Chip {
 
   Time now() const { return now_; }
   bool driving() const;
+  /// A drive runs that has no end of its own (52h, 53h).
+  bool drives_endlessly() const;
   bool error_pending() const;
   const AxisCounts& position() const { return position_; }
   const std::vector<DriveRecord>& drives() const { return drives_; }

@@ -66,7 +66,7 @@ void Chip::make_event(Running& running) {
     ++running.record.pulses[axis];
     if (has_axis(running.segment.stretching, axis)) ++stretching;
   }
-  if (sink_ != nullptr) sink_->pulses(running.next, event, position_);
+  if (sink_ != nullptr) sink_->pulses(running.next, event, position_, *running.segment.pulses);
   running.next += running.speed.take(stretching, running.counts_remaining ? running.remaining : 1);
   if (running.counts_remaining) --running.remaining;
   ++running.record.events;

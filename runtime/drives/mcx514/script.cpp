@@ -101,11 +101,18 @@ std::string_view Reader::visible(std::size_t most) const {
 /// WR6, WR, WRx: a register or what was meant as one.
 bool is_register_like(const std::string& word) { return (word.starts_with("wr") || word.starts_with("rr")) && word.size() <= 4; }
 
+/// A time in front of an item, as --emit=frames prints it: 0.000000 and a blank.
+std::size_t time_length(std::string_view line) {
+  const std::size_t end = std::min(line.find_first_not_of("0123456789."), line.size());
+  const bool is_time = end > 0 && end < line.size() && line.substr(0, end).find('.') != std::string_view::npos && line[end] == ' ';
+  return is_time ? end + 1 : 0;
+}
+
 bool Reader::begins_item() const {
-  const std::string first = lower(word());
+  const std::string line = lower(rest_of_line().substr(time_length(rest_of_line())));
+  const std::string first = line.substr(0, std::min(line.find_first_of(" \t\r;<=:"), line.size()));
   if (is_register_like(first)) return true;
   if (first != "wait" && first != "read") return false;
-  const std::string line = lower(rest_of_line());
   const std::size_t second = std::min(line.find_first_not_of(" \t", 4), line.size());
   const std::string_view what = std::string_view(line).substr(second);
   if (first == "read") return what.starts_with("rr");
@@ -255,6 +262,7 @@ void Reader::read_wait() {
 
 Script Reader::read() {
   for (pass_blanks(); !ended(); pass_blanks()) {
+    if (column() == 1 && begins_item()) at_ += time_length(rest_of_line());
     const std::string first = lower(word());
     if (text_[at_] == ';') read_comment();
     else if (is_register_like(first) && first[0] == 'w') read_write();

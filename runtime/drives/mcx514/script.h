@@ -7,7 +7,8 @@
 //     read RR0                                  the value is reported
 //
 // Blanks and line ends between the parts of a write do not count, as in text taken out of a printed page. A comment goes from ; to the end of
-// its line and over the lines below it that neither begin with WR, RR, wait or read nor hold an arrow. Writes take no simulated time.
+// its line and over the lines below it that neither begin with WR, RR, wait or read nor hold an arrow. Writes take no simulated time; a time in
+// front of an item (0.000000, as --emit=frames prints it) is passed over.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +43,12 @@ struct Script {
 
 /// Reads a whole script. Never fails: what is wrong is in problems.
 Script read_script(std::string_view text);
+
+class Chip;
+
+/// Executes the items in order; false where the chip's time limit or an interruption ended it before. What still drives then is left to
+/// Chip::run_until_idle().
+bool run_items(const Script& script, Chip& chip);
 
 /// "WR6 <- 1388h Write"
 std::string write_text(int reg, std::uint16_t value);
