@@ -33,6 +33,8 @@ struct Options {
   std::vector<std::string> include_dirs;
   std::vector<std::pair<std::string, std::string>> defines;  // -D name[=text]
   source::WarningOptions warnings;                           // -W...
+  int max_include_depth = 64;                                // of #include in #include
+  bool plain_move_fast_path = true;                          // false: every line goes through the grammar
 };
 
 class Session {
@@ -43,7 +45,7 @@ class Session {
 
   /// Compiles the files in order into one module. nullopt when there are errors; diagnostics() has all of them.
   /// Names stay known for later calls.
-  std::optional<bytecode::Module> compile(const std::vector<InputFile>& files);
+  std::optional<bytecode::Module> compile(std::vector<InputFile> files);
 
   /// Compiles a line of on-line commands (also: open ... close) as one load script. `name` is shown as the file,
   /// for example "-e" or "stdin". coord, motor: what & and # address when the text begins.

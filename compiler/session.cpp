@@ -40,10 +40,10 @@ Session::Session(Options options) : state_(std::make_unique<State>(std::move(opt
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 
-std::vector<ir::Unit> Session::State::analyse(const std::vector<InputFile>& files, bool online) {
+std::vector<ir::Unit> Session::State::analyse(std::vector<InputFile> files, bool online) {
   const auto first_file = static_cast<std::int32_t>(sources.file_count());
   std::vector<ir::Unit> units;
-  for (const InputFile& file : files) units.push_back(frontend.read(file.name, file.text));
+  for (InputFile& file : files) units.push_back(frontend.read(file.name, std::move(file.text)));
   for (const std::string& name : frontend.known_names()) project.lexed_names.insert(name);
   for (const ir::Unit& unit : units) sema::reserve_numbers(unit, project);
   for (ir::Unit& unit : units) sema::declare(unit, project, diagnostics);
@@ -67,8 +67,8 @@ std::optional<bytecode::Module> Session::State::generate(const std::vector<ir::U
   return module;
 }
 
-std::optional<bytecode::Module> Session::compile(const std::vector<InputFile>& files) {
-  return state_->generate(state_->analyse(files, false));
+std::optional<bytecode::Module> Session::compile(std::vector<InputFile> files) {
+  return state_->generate(state_->analyse(std::move(files), false));
 }
 
 std::optional<bytecode::Module> Session::compile_online(std::string_view text, std::string_view name) {

@@ -11,11 +11,13 @@ namespace pmac::compiler {
 struct Session::State {
   explicit State(Options o) : options(std::move(o)), warning_control(sources, options.warnings), frontend(sources, diagnostics, options.include_dirs) {
     diagnostics.set_filter(&warning_control);
+    frontend.set_max_include_depth(options.max_include_depth);
+    frontend.read_plain_moves(options.plain_move_fast_path);
     for (const auto& [name, text] : options.defines) frontend.define(name, text);
   }
 
   /// Front end and sema: checked IR; what is wrong is in diagnostics.
-  std::vector<ir::Unit> analyse(const std::vector<InputFile>& files, bool online);
+  std::vector<ir::Unit> analyse(std::vector<InputFile> files, bool online);
   /// nullopt when there are errors.
   std::optional<bytecode::Module> generate(const std::vector<ir::Unit>& units);
 

@@ -104,16 +104,17 @@ std::string OperandText::call() const {
   });
 }
 
-std::string OperandText::word() const {
+std::string word_name(WordKind kind, int index) {
   static constexpr const char* kCenters[] = {"I", "J", "K", "II", "JJ", "KK"};
-  const auto kind = static_cast<WordKind>(in_.c());
-  std::string name(axis_name(in_.b()));
-  if (kind == WordKind::kCenter) name = in_.b() < 6 ? kCenters[in_.b()] : "?";
+  std::string name(axis_name(index));
+  if (kind == WordKind::kCenter) name = index < 6 ? kCenters[index] : "?";
   if (kind == WordKind::kRadius) name = "R";
   if (kind == WordKind::kVelocity) name += " velocity";
   if (kind == WordKind::kTriggerDistance) name += " trigger";
-  return name + ", " + reg(in_.a);
+  return name;
 }
+
+std::string OperandText::word() const { return word_name(static_cast<WordKind>(in_.c()), in_.b()) + ", " + reg(in_.a); }
 
 std::string OperandText::control() const {
   const std::string verb(control_verb_name(static_cast<ControlVerb>(in_.a)));
@@ -176,6 +177,8 @@ std::string OperandText::text() const {
     case OperandFormat::kWord: return std::to_string(in_.a);
     case OperandFormat::kCodeOf: return letter_name(in_.b()) + " " + reg(in_.a) + ", words from " + std::to_string(in_.c());
     case OperandFormat::kLetters: return letters();
+    case OperandFormat::kRegRun:
+      return a_and(entry(module_.move_runs, [](const MoveRun& run) { return std::to_string(run.row_count()) + " rows"; }));
     case OperandFormat::kProgram: return entry(module_.programs, program_title);
   }
   return {};
@@ -265,6 +268,19 @@ void add_instruction(std::string& out, const Module& module, const Program& prog
   out += line + "\n";
 }
 
+void add_move_run(std::string& out, const Module& module, std::size_t number) {
+  const MoveRun& run = module.move_runs[number];
+  out += "move run " + std::to_string(number) + ": " + std::to_string(run.row_count()) + " rows\n";
+  const std::size_t rows = std::min({run.row_count(), run.column.size(), std::max<std::size_t>(run.first_word.size(), 1) - 1});
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::string line = right_aligned(std::to_string(row), 6) + " ";
+    for (std::size_t i = run.first_word[row]; i < std::min<std::size_t>(run.first_word[row + 1], std::min(run.words.size(), run.values.size())); ++i)
+      line += " " + word_name(move_word_kind(run.words[i]), move_word_index(run.words[i])) + " " + number_text(run.values[i]);
+    out += padded(line, kSourceColumn) + "  ; " + to_string(module, run.source(row)) + "\n";
+  }
+  out += "\n";
+}
+
 std::vector<LabelEntry> labels_by_place(const Program& program) {
   std::vector<LabelEntry> labels = program.labels;
   std::stable_sort(labels.begin(), labels.end(), [](const auto& left, const auto& right) { return left.pc < right.pc; });
@@ -295,6 +311,7 @@ std::string disassemble(const Module& module) {
   add_table(out, "axis definitions", module.axis_definitions, axis_definition_text);
   add_table(out, "pointer definitions", module.pointer_definitions,
             [&](const PointerDefinition& definition) { return pointer_text(module, definition); });
+  for (std::size_t i = 0; i < module.move_runs.size(); ++i) add_move_run(out, module, i);
   for (const Program& program : module.programs) add_program(out, module, program);
   if (!module.load_order.empty()) {
     out += "load order:";

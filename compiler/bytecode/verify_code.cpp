@@ -179,6 +179,7 @@ std::string InstructionCheck::operands() const {
     case OperandFormat::kWord: return line_word(in_.a);
     case OperandFormat::kCodeOf: return code_operands();
     case OperandFormat::kLetters: return letters();
+    case OperandFormat::kRegRun: return both(registers(in_.a), index(module_.move_runs.size(), "move run"));
     case OperandFormat::kProgram:
       if (std::string why = index(module_.programs.size(), "program"); !why.empty()) return why;
       return module_.programs[static_cast<std::size_t>(in_.imm)].kind != ProgramKind::kOnline ? std::string()

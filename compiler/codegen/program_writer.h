@@ -93,6 +93,7 @@ class ProgramWriter {
   void write(const ir::SetFrax& node, const source::Span& span);
   void write(const ir::SetNormal& node, const source::Span& span);
   void write(const ir::Move& node, const source::Span& span);
+  void write(const ir::MoveRows& node, const source::Span& span);
   void write(const ir::Dwell& node, const source::Span& span);
   void write(const ir::Delay& node, const source::Span& span);
   void write(const ir::Evaluate& node, const source::Span& span);

@@ -307,6 +307,26 @@ void ProgramWriter::write(const ir::Move& node, const source::Span&) {
   emit_imm(Opcode::kBlockEnd, 0, 0);
 }
 
+/// A row counter, and for each run a loop over its rows:  load.int t,0  row.words t,run  block.end  row.loop t
+void ProgramWriter::write(const ir::MoveRows& node, const source::Span& span) {
+  const Register row = take();
+  const bytecode::SourceLine first = tables_.line(span);
+  const std::int64_t shown_further = first.line - static_cast<std::int64_t>(node.runs->front().line.front());  // #line
+  for (bytecode::MoveRun& run : *node.runs) {
+    run.file = first.file;
+    for (std::uint32_t& line : run.line) line = static_cast<std::uint32_t>(std::max<std::int64_t>(0, line + shown_further));
+    const auto pc = static_cast<std::uint32_t>(code_.size());
+    if (!lines_.empty() && lines_.back().pc == pc) lines_.pop_back();
+    lines_.push_back({pc, run.source(0)});
+    tables_.module().move_runs.push_back(std::move(run));
+    emit_imm(Opcode::kLoadInt, row, 0);
+    const std::size_t begin = emit_imm(Opcode::kRowWords, row, static_cast<std::int64_t>(tables_.module().move_runs.size()) - 1);
+    emit_imm(Opcode::kBlockEnd, 0, 0);
+    emit_imm(Opcode::kRowLoop, row, static_cast<std::int64_t>(begin));
+  }
+  node.runs->clear();
+}
+
 void ProgramWriter::write(const ir::Dwell& node, const source::Span&) { emit_imm(Opcode::kDwell, value(*node.time_ms), 0); }
 void ProgramWriter::write(const ir::Delay& node, const source::Span&) { emit_imm(Opcode::kDelay, value(*node.time_ms), 0); }
 

@@ -127,6 +127,14 @@ struct SetFrax { std::uint32_t axes = 0; bool secondary = false; bool off = fals
 struct SetNormal { ExprPtr vector[3]; bool second_set = false; };
 struct Word { WordKind kind = WordKind::kTarget; int index = 0; ExprPtr value; Span span; };
 struct Move { std::vector<Word> words; };
+/// Plain move lines in a row (bytecode::MoveRun; file is that of the spans until code is made), with what there is to check in them:
+/// the first row that moves an axis, that has a centre or radius, and that moves X Y Z (or XX YY ZZ) without one.
+struct MoveRows {
+  std::shared_ptr<std::vector<bytecode::MoveRun>> runs;   // code generation takes them out
+  struct AxisUse { int axis; Span span; };
+  std::vector<AxisUse> first_targets;
+  Span first_centre, without_centre[2];
+};
 struct Dwell { ExprPtr time_ms; };
 struct Delay { ExprPtr time_ms; };
 
@@ -156,7 +164,7 @@ struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its
 struct Stmt {
   Span span;
   std::variant<Block, Assign, AssignSeries, Evaluate, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, CodeLine, ReadWords, LineCondition, SetFlag, Cycle, StepBlock, SetMode, SetParameter,
-               SetAbsInc, SetFrax, SetNormal, Move, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
+               SetAbsInc, SetFrax, SetNormal, Move, MoveRows, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
                Globals, Report, SystemCommand, OpenBuffer, ExecuteAtOnce>
       node;
 };

@@ -158,6 +158,11 @@ class StmtPrinter {
     for (const Word& word : node.words) text += print_word(word);
     line(text);
   }
+  void operator()(const MoveRows& node) {
+    std::size_t rows = 0;
+    for (const bytecode::MoveRun& run : *node.runs) rows += run.row_count();
+    line(fmt::format("moves of {} plain lines", rows));
+  }
   void operator()(const Dwell& node) { line(fmt::format("dwell {}", print(*node.time_ms))); }
   void operator()(const Delay& node) { line(fmt::format("delay {}", print(*node.time_ms))); }
   void operator()(const Evaluate& node) { line(print(*node.value)); }

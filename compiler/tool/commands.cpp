@@ -55,13 +55,14 @@ int preprocess(compiler::Session& session, const Arguments& arguments, const std
   return kOk;
 }
 
-int compile(compiler::Session& session, const Arguments& arguments, const std::vector<compiler::InputFile>& files) {
-  const auto module = session.compile(files);
+int compile(compiler::Session& session, const Arguments& arguments, std::vector<compiler::InputFile> files) {
+  const auto module = session.compile(std::move(files));
   if (report(session, arguments) || !module) return kUserError;
   if (arguments.output.empty() || arguments.check) return kOk;
   refuse_to_overwrite(arguments.files, arguments.output);
-  const std::vector<std::uint8_t> bytes = bytecode::save(*module);
-  write_file(arguments.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(arguments.output, [&](const ByteWriter& write) {
+    bytecode::save(*module, [&](std::span<const std::uint8_t> piece) { write({reinterpret_cast<const char*>(piece.data()), piece.size()}); });
+  });
   return kOk;
 }
 
@@ -79,9 +80,9 @@ int run(const Arguments& arguments) {
   }
   compiler::Session session(options);
   set_error_limit(session, arguments);
-  const std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
+  std::vector<compiler::InputFile> files = read_inputs(arguments.files, session);
   if (arguments.preprocess) return preprocess(session, arguments, files);
-  return arguments.emit.empty() ? compile(session, arguments, files) : emit(session, arguments, files);
+  return arguments.emit.empty() ? compile(session, arguments, std::move(files)) : emit(session, arguments, files);
 }
 
 }  // namespace pmac::pmacc

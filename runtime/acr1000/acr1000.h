@@ -3,6 +3,7 @@
 
 #include "runtime/acr1000/axis_law.h"
 #include "runtime/acr1000/card_memory.h"
+#include "runtime/acr1000/card_system.h"
 #include "runtime/acr1000/master_profile.h"
 #include "runtime/acr1000/move_block.h"
 #include "runtime/acr1000/rates.h"

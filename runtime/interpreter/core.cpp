@@ -67,6 +67,7 @@ InterpreterCore::Next InterpreterCore::after(Flow flow) {
   if (flow == Flow::kFault) return fault("the statement failed");
   if (flow == Flow::kContinue) return Next::kContinue;
   ++thread_.pc_;
+  stand_at_next_row();
   end(RunStop::kSuspended);
   return Next::kLeave;
 }
@@ -311,6 +312,15 @@ dispatch_next:
       LEAVE_UNLESS(collect_cycle_word(*pc, r[pc->a]) == Next::kContinue);
     }
     HOST(host_.motion(thread_, *pc, SPAN));
+  }
+  OP(RowWords) : SAVE(); LEAVE_UNLESS(put_row(*pc, r) == Next::kContinue);
+  OP(RowLoop) : {
+    if (r[pc->a] == 0.0) NEXT();
+    COUNT_RUN();
+    pc = code + pc->imm;
+    run_start = pc;
+    if (budget <= 0) STOP_HERE(RunStop::kBudget);
+    DISPATCH();
   }
   OP(BlockEnd) : {
     if (in_cycle_block()) CALL_MEMBER(end_cycle_block());

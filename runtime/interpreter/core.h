@@ -112,6 +112,8 @@ class InterpreterCore {
   Next define_cycle(double target);
   Next call_cycle();
   bool in_cycle_block() const { return (thread_.cycle_.armed || thread_.cycle_.called) && thread_.code_depth_ == 0; }
+  Next put_row(const Instruction& in, double* r);
+  void stand_at_next_row();
   Next collect_cycle_word(const Instruction& in, double value);
   Next end_cycle_block();
   Next enter_cycle();

@@ -134,6 +134,7 @@ class Thread {
  private:
   friend class InterpreterCore;
   bool stand_at_top(std::int64_t label);
+  std::optional<bytecode::SourceLine> row_source() const;
   void replace_module(const std::shared_ptr<const bytecode::Module>& from, const std::shared_ptr<const bytecode::Module>& by);
 
   ProgramHandle program_, top_;

@@ -12,6 +12,8 @@ bool is_same_line(const bytecode::SourceLine& a, const bytecode::SourceLine& b) 
 
 void stop_at_other_lines(bytecode::Program& program, const bytecode::SourceLine& here) {
   unfuse(program);
+  for (bytecode::Instruction& in : program.code)
+    if (in.op == bytecode::Opcode::kRowLoop) in.op = bytecode::Opcode::kLoopIfTrue;
   for (const bytecode::LineEntry& entry : program.lines) {
     const auto pc = static_cast<std::int32_t>(entry.pc);
     if (!is_same_line(entry.source, here)) program.code[entry.pc] = bytecode::Instruction::with_imm(bytecode::Opcode::kLoop, 0, pc);
