@@ -78,7 +78,7 @@ bool Chip::check_axes(const Command& command, std::uint32_t axes, Place place) {
     return false;
   }
   if (refuses_axes(command) && axes != 0) {
-    error(place, fmt::format("{:02X}h ({}) takes no axis bits; the interpolation mode (2Ah) says which axes it moves", command.code, command.meaning));
+    error(place, fmt::format("{:02X}h ({}) takes no axis bits; write {:04X}h", command.code, command.meaning, command.code));
     return false;
   }
   if (command.kind == CommandKind::kRead && (axes & (axes - 1)) != 0) {

@@ -13,6 +13,7 @@ namespace pmac::drives::mcx514 {
 namespace {
 
 constexpr double kTolerance = 1.0;              // pulses, from the path
+constexpr double kChordTolerance = 0.9;         // of lines along a curve of points, which itself is known to a few hundredths
 constexpr double kShortestArc = 48;             // pulses; shorter ones become lines
 constexpr std::int64_t kFastest_pps = 8'000'000, kFastestContinuous_pps = 4'000'000;
 
@@ -118,9 +119,8 @@ void Encoder::drive_line(const AxisCounts& to, const PathItem& item) {
 }
 
 void Encoder::add_points(const std::vector<Point>& points, const PathItem& item) {
-  ChordFinder chords(points, kTolerance);
-  std::size_t made = 0;
-  for (std::optional<AxisCounts> to; failure_.empty() && (to = chords.next(position_)); ++made)
+  ChordFinder chords(points, kChordTolerance);
+  for (std::optional<AxisCounts> to; failure_.empty() && (to = chords.next(position_));)
     if (*to != position_) drive_line(*to, item);
 }
 

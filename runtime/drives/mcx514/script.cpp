@@ -111,12 +111,7 @@ std::size_t time_length(std::string_view line) {
 bool Reader::begins_item() const {
   const std::string line = lower(rest_of_line().substr(time_length(rest_of_line())));
   const std::string first = line.substr(0, std::min(line.find_first_of(" \t\r;<=:"), line.size()));
-  if (is_register_like(first)) return true;
-  if (first != "wait" && first != "read") return false;
-  const std::size_t second = std::min(line.find_first_not_of(" \t", 4), line.size());
-  const std::string_view what = std::string_view(line).substr(second);
-  if (first == "read") return what.starts_with("rr");
-  return what.starts_with("idle") || what.starts_with("next") || (!what.empty() && std::isdigit(static_cast<unsigned char>(what[0])));
+  return is_register_like(first) || first == "wait" || first == "read";
 }
 
 bool Reader::has_arrow(std::string_view line) {
