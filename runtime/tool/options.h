@@ -37,6 +37,9 @@ struct RunOptions {
   std::uint64_t max_memory_mib = 8192;
   std::uint64_t max_output_mib = 262'144;                     // of all files and stage records together
   std::string record, gather;
+  std::string trace;                                          // a file, or - for standard output
+  bool trace_instructions = false;
+  std::uint64_t trace_limit = 1'000'000;                      // records
   std::vector<std::string> plots;
   std::string emit;
   bool stats = false, check_limits = false, quiet = false;
