@@ -60,7 +60,6 @@ class CardHost : public runtime::Host {
   runtime::ProgramHandle stored;        // the program that load scripts install
   ProgramMemory* memory = nullptr;
   bool program_runs = false;
-  bool may_move = true;                 // a motion command can be taken now
 
  private:
   Flow fail(Thread& thread, std::string id, std::string detail);

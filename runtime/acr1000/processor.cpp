@@ -8,10 +8,6 @@ namespace pmac::acr1000 {
 
 using runtime::RunStop;
 
-namespace {
-constexpr std::uint64_t kAtOnceBudget = 1'000'000;
-}
-
 CardProcessor::CardProcessor(Card& card, std::function<void(std::string_view)> print, ProgramMemory* memory)
     : card_(card), p_(bytecode::kPCount), q_(bytecode::kQCount), host_(card, std::move(print)), line_(p_.data(), q_.data()), program_(p_.data(), q_.data()) {
   host_.memory = memory;
@@ -74,25 +70,6 @@ DriverStep CardProcessor::fail(const runtime::RunResult& result, std::uint64_t c
   step.fault = DriverFault{host_.fault_id.empty() ? "ACR-E02" : std::exchange(host_.fault_id, {}), result.fault->detail, host_.place};
   if (in_program) end_program();
   return step;
-}
-
-std::optional<DriverFault> CardProcessor::execute_now(runtime::ProgramHandle line) {
-  runtime::Thread thread(p_.data(), q_.data());
-  thread.begin(std::move(line));
-  const Place before = host_.place;
-  host_.may_move = false;
-  std::optional<DriverFault> refused;
-  while (thread.active() && !refused) {
-    const runtime::RunResult result = thread.run(host_, kAtOnceBudget, 0);
-    if (result.stop == RunStop::kFault) refused = fail(result, 0, false).fault;
-    else if (result.stop == RunStop::kBudget) refused = DriverFault{"ACR-E02", "the line is too long", host_.place};
-    obey(false);
-    if (!refused && answer_peek()) refused = DriverFault{"ACR-E09", "PEEK is answered only while nothing moves; ctrl-L asks for the move counter at any time", host_.place};
-    host_.peek.reset();
-  }
-  host_.may_move = true;
-  if (!refused) host_.place = before;
-  return refused;
 }
 
 DriverStep CardProcessor::step(std::uint64_t command_budget) {

@@ -18,8 +18,6 @@ class CardProcessor : public CardDriver {
 
   /// A command line, or the script of a file: executed from its beginning. A line that waits for the program's end is given up for it.
   void start(runtime::ProgramHandle commands);
-  /// Executes a command line at once, also while a motion of the program waits. A motion in it is refused, and PEEK while something moves.
-  std::optional<DriverFault> execute_now(runtime::ProgramHandle line);
   /// A command line is not done yet, other than waiting for the program's end.
   bool executes_line() const { return line_.active() && !line_waits_; }
 
