@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include <unistd.h>
 
@@ -85,7 +86,7 @@ bool write_outputs(const Script& script, const RunOptions& options, Chip& chip, 
   chip.observe(&sink);
   const bool finished = execute(script, chip, options);
   if (table) table->finish();
-  for (const std::string& file : options.plots) picture.draw(file, options.files[0]);
+  for (const std::string& file : options.plots) picture.draw(file, std::filesystem::path(options.files[0]).filename().string());
   return finished;
 }
 

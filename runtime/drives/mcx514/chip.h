@@ -85,6 +85,8 @@ class Chip {
   bool driving() const;
   /// A drive runs that has no end of its own (52h, 53h).
   bool drives_endlessly() const;
+  /// An error of the script that is none of a write.
+  void refuse(Place place, std::string text) { problem(true, place, std::move(text)); }
   bool error_pending() const;
   const AxisCounts& position() const { return position_; }
   const std::vector<DriveRecord>& drives() const { return drives_; }
@@ -159,6 +161,7 @@ class Chip {
   bool decelerates_ = false;                                  // 6Dh
   bool fresh_segment_data_ = false;                           // 06h or 08h was written since the last interpolation command
   Place fresh_place_;
+  int refused_mode_line_ = 0;                                 // of an interpolation mode that was written while driving; 0: none
 
   Time now_ = 0, latest_ = time_from_clocks(std::numeric_limits<std::int64_t>::max());
   AxisCounts position_{};

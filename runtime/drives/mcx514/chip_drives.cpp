@@ -228,6 +228,9 @@ void Chip::start_interpolation(const Command& command, Place place) {
   for (std::size_t axis = 0; axis < kAxes; ++axis)
     if (has_axis(mode_axes(), axis) && single_[axis])
       return error(place, fmt::format("drive command while driving: axis {} drives since line {}; wait idle before", axis_name(axis), single_[axis]->record.place.line));
+  if (interpolation_ && refused_mode_line_ > 0)
+    return error(place, fmt::format("drive command while driving: {} interpolate since line {}, and the mode of line {} could not be taken; wait idle before",
+                                    axes_text(mode_axes()), interpolation_->record.place.line, refused_mode_line_));
   if (interpolation_ && !fresh_segment_data_)
     return error(place, fmt::format("drive command while driving: {} interpolate since line {}, and no finish point has been written for a next segment; wait idle before",
                                     axes_text(mode_axes()), interpolation_->record.place.line));

@@ -60,7 +60,11 @@ void Chip::set_common(const Command& command, Place place) {
 }
 
 void Chip::set_mode(std::uint16_t mode, Place place) {
-  if (interpolation_) return error(place, "the interpolation mode is written while an interpolation drive runs; wait idle before");
+  if (interpolation_) {
+    refused_mode_line_ = place.line;
+    return error(place, "the interpolation mode is written while an interpolation drive runs; wait idle before");
+  }
+  refused_mode_line_ = 0;
   if ((mode & 0x2020u) != 0) return error(place, fmt::format("interpolation mode {:04X}h: D5 and D13 are 0", mode));
   if ((mode & 0x0c00u) != 0) error(place, "interpolation over several chips (D11-D10 of the interpolation mode) is not simulated");
   if ((mode & 0x0200u) != 0) error(place, "single-step interpolation (D9 of the interpolation mode) is not simulated");

@@ -126,7 +126,7 @@ void Mcx514Drive::add_figures(const Chip& chip, const PathCheck& check, Executio
   std::vector<Figure>& figures = execution.figures;
   figures.push_back({"drive_commands", static_cast<double>(chip.drives().size())});
   figures.push_back({"writes_and_waits", static_cast<double>(encoder_->lines().size())});
-  figures.push_back({"events", static_cast<double>(events)});
+  figures.push_back({"pulse_events", static_cast<double>(events)});
   for (std::size_t axis = 0; axis < path_.motors.size(); ++axis) {
     figures.push_back({fmt::format("pulses_{}", kAxisNames[axis]), static_cast<double>(pulses[axis])});
     figures.push_back({fmt::format("position_{}", kAxisNames[axis]), static_cast<double>(chip.position()[axis])});

@@ -9,7 +9,9 @@ bool execute(const ScriptItem& item, Chip& chip) {
   switch (item.kind) {
     case ScriptItem::Kind::kWrite: chip.write(item.reg, item.value, place); return true;
     case ScriptItem::Kind::kRead: chip.read(item.reg, place); return true;
-    case ScriptItem::Kind::kWaitIdle: return chip.run_until_idle();
+    case ScriptItem::Kind::kWaitIdle:
+      if (chip.drives_endlessly()) chip.refuse(place, "wait idle has no end: a continuous drive (52h, 53h) runs; stop it by 56h or 57h before");
+      return chip.drives_endlessly() || chip.run_until_idle();
     case ScriptItem::Kind::kWaitNext: return chip.run_until_next();
     case ScriptItem::Kind::kWaitTime: return chip.run_until(chip.now() + time_from_seconds(item.wait_s));
   }

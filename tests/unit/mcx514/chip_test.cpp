@@ -234,6 +234,25 @@ TEST_CASE("what a drive needs and does not have is said with its line", "[mcx514
   CHECK_THAT(first_error(mode("0007") + speeds(100, 100) + line_to(5, 5) + data(100, "0308") + data(5, "0406") + "WR0 <- 0069h\n"), Contains("no helical calculation value"));
 }
 
+TEST_CASE("a listing that follows itself without waiting is refused at its mode and at its drive command", "[mcx514]") {
+  Chip chip;
+  run(chip, std::string(kListing) + kListing);
+  REQUIRE(errors(chip).size() == 2);
+  CHECK(errors(chip)[0].find("23: the interpolation mode is written while") == 0);
+  CHECK(errors(chip)[1].find("42: drive command while driving: X, Y interpolate since line 21") == 0);
+  Chip waiting;
+  run(waiting, std::string(kListing) + "wait idle\n" + kListing);
+  CHECK(errors(waiting).empty());
+  CHECK(waiting.position() == AxisCounts{10000, -10000, 0, 0});
+}
+
+TEST_CASE("waiting for the end of a drive without end is refused", "[mcx514]") {
+  Chip chip;
+  run(chip, speeds(1000, 1000) + "WR0 <- 0152h\nwait 1 ms\nwait idle\nWR0 <- 0157h\n");
+  REQUIRE(errors(chip).size() == 1);
+  CHECK(errors(chip)[0].find("9: wait idle has no end") == 0);
+}
+
 TEST_CASE("a helix runs with its calculated value and its rotations", "[mcx514]") {
   Chip chip;
   run(chip, mode("0047") + speeds(1000, 1000) + "WR6 <- 0002h\nWR0 <- 001Ah\n" + data(500, "0108") + data(0, "0208") + line_to(0, 0) + data(300, "0406") +
