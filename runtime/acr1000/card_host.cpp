@@ -71,6 +71,7 @@ Flow CardHost::card(Thread& thread, CardVerb verb, std::span<const double> x) {
       return Flow::kContinue;
     case CardVerb::kPeek: return ask_peek(thread, x[0], x[1]);
     case CardVerb::kCall:
+      note_call(thread);
       if (thread.call_depth() < kMaxNesting) return Flow::kContinue;
       return fail(thread, "ACR-E08", fmt::format("subroutines call each other deeper than {}; a RET is missing", kMaxNesting));
     case CardVerb::kReturn:
@@ -87,6 +88,15 @@ Flow CardHost::card(Thread& thread, CardVerb verb, std::span<const double> x) {
   return refuse(thread);
 }
 
+void CardHost::note_call(const Thread& thread) {
+  call_sites_.resize(thread.call_depth());
+  call_sites_.push_back(thread.pc());
+}
+
+std::span<const std::uint32_t> CardHost::call_sites(const Thread& thread) const {
+  return std::span(call_sites_).first(std::min(call_sites_.size(), thread.call_depth()));
+}
+
 Flow CardHost::set_rate(Thread& thread, CardVerb verb, double value) {
   const bool is_velocity = verb == CardVerb::kVel;
   const double most = !is_velocity ? kMostInteger : card_.config().wide_velocity ? kVel24 : kVel16;
@@ -98,6 +108,7 @@ Flow CardHost::set_rate(Thread& thread, CardVerb verb, double value) {
 }
 
 Flow CardHost::move(Thread& thread, CardVerb verb, std::span<const double> x) {
+  if (card_.waits()) return fail(thread, "ACR-E09", "the card waits for the motion before to end; this one cannot be taken now");
   for (const double value : x)
     if (!whole(thread, value, kLeastInteger, kMostInteger, "an argument of a motion")) return Flow::kFault;
   MoveRequest wanted;
@@ -156,10 +167,11 @@ Flow CardHost::send(Thread& thread, int, std::string_view text) {
 
 /// "hex 0480...": a fast move block of a file.
 Flow CardHost::fast_block(Thread& thread, std::string_view digits) {
+  if (card_.waits()) return fail(thread, "ACR-E09", "the card waits for the motion before to end; this one cannot be taken now");
   const auto bytes = bytes_from_hex(digits);
   if (!bytes) return fail(thread, "ACR-E12", "the bytes of a fast move block are pairs of hexadecimal digits");
   const auto decoded = decode_block(*bytes);
-  if (const auto* error = std::get_if<BlockError>(&decoded)) return fail(thread, "ACR-E12", error->detail);
+  if (const auto* error = std::get_if<BlockError>(&decoded)) return fail(thread, "ACR-E12", text_of(*error));
   if (const auto refusal = card_.request(std::get<DecodedBlock>(decoded).block, place)) return fail(thread, std::string(row_of(refusal->id).id), refusal->detail);
   return Flow::kSuspend;
 }

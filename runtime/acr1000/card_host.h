@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "runtime/acr1000/card.h"
 #include "runtime/acr1000/program_memory.h"
@@ -51,6 +53,8 @@ class CardHost : public runtime::Host {
 
   void print(std::string_view text);
   std::uint64_t outputs() const { return outputs_; }
+  /// Where the open GSBs of the program were called, the first one first.
+  std::span<const std::uint32_t> call_sites(const Thread& thread) const;
 
   /// Of the last command that the card was asked for, or that failed.
   Place place;
@@ -68,6 +72,7 @@ class CardHost : public runtime::Host {
   Flow set_rate(Thread& thread, bytecode::CardVerb verb, double value);
   Flow move(Thread& thread, bytecode::CardVerb verb, std::span<const double> arguments);
   Flow change_relay(Thread& thread, bool on, double number);
+  void note_call(const Thread& thread);
   Flow run(Thread& thread, double line);
   Flow ask_peek(Thread& thread, double address, double count);
   Flow fast_block(Thread& thread, std::string_view digits);
@@ -77,6 +82,7 @@ class CardHost : public runtime::Host {
   Card& card_;
   std::function<void(std::string_view)> print_;
   std::uint64_t outputs_ = 0;
+  std::vector<std::uint32_t> call_sites_;
 };
 
 }  // namespace pmac::acr1000

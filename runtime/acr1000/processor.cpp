@@ -9,7 +9,7 @@ namespace pmac::acr1000 {
 using runtime::RunStop;
 
 CardProcessor::CardProcessor(Card& card, std::function<void(std::string_view)> print, ProgramMemory* memory)
-    : card_(card), p_(bytecode::kPCount), q_(bytecode::kQCount), host_(card, std::move(print)), line_(p_.data(), q_.data()), program_(p_.data(), q_.data()) {
+    : card_(card), p_(bytecode::kPCount), q_(bytecode::kQCount), host_(card, std::move(print)), line_(p_.data(), q_.data()), program_(p_.data(), q_.data()), aside_(p_.data(), q_.data()) {
   host_.memory = memory;
   card_.bind_parameters(std::span(p_).first(card.config().parameter_count));
 }
@@ -70,6 +70,28 @@ DriverStep CardProcessor::fail(const runtime::RunResult& result, std::uint64_t c
   step.fault = DriverFault{host_.fault_id.empty() ? "ACR-E02" : std::exchange(host_.fault_id, {}), result.fault->detail, host_.place};
   if (in_program) end_program();
   return step;
+}
+
+std::optional<DriverFault> CardProcessor::execute_now(runtime::ProgramHandle commands) {
+  constexpr std::uint64_t kBudget = 100'000;   // a line has no loops
+  const Place waiting = host_.place;
+  aside_.begin(std::move(commands));
+  const runtime::RunResult result = aside_.run(host_, kBudget, 1);
+  const bool asks = std::exchange(host_.request, {}).kind != ProgramRequest::Kind::kNone;
+  aside_.stop();
+  const Place own = std::exchange(host_.place, waiting);
+  if (result.stop == RunStop::kFault) return DriverFault{host_.fault_id.empty() ? "ACR-E02" : std::exchange(host_.fault_id, {}), result.fault->detail, own};
+  if (asks || result.stop != RunStop::kEnded) return DriverFault{"ACR-E09", "the card waits for a motion to begin; HALT first", own};
+  return std::nullopt;
+}
+
+std::uint64_t CardProcessor::position() const {
+  std::uint64_t hash = 14695981039346656037u;   // FNV-1a
+  const auto add = [&hash](std::uint32_t value) { hash = (hash ^ value) * 1099511628211u; };
+  add(program_.pc());
+  add(line_.pc());
+  for (const std::uint32_t site : host_.call_sites(program_)) add(site);
+  return hash;
 }
 
 DriverStep CardProcessor::step(std::uint64_t command_budget) {

@@ -18,6 +18,8 @@ class CardProcessor : public CardDriver {
 
   /// A command line, or the script of a file: executed from its beginning. A line that waits for the program's end is given up for it.
   void start(runtime::ProgramHandle commands);
+  /// A command line at once, while the program waits for its motion to begin. A motion command, RUN or NEW in it is refused.
+  std::optional<DriverFault> execute_now(runtime::ProgramHandle commands);
   /// A command line is not done yet, other than waiting for the program's end.
   bool executes_line() const { return line_.active() && !line_waits_; }
 
@@ -28,6 +30,7 @@ class CardProcessor : public CardDriver {
   void abandon() override;
   std::span<const double> parameters() const override { return card_.parameters(); }
   int nesting() const override { return static_cast<int>(program_.call_depth()); }
+  std::uint64_t position() const override;
   std::uint64_t outputs() const override { return host_.outputs(); }
 
  private:
@@ -39,7 +42,7 @@ class CardProcessor : public CardDriver {
   Card& card_;
   std::vector<double> p_, q_;
   CardHost host_;
-  runtime::Thread line_, program_;
+  runtime::Thread line_, program_, aside_;
   bool line_waits_ = false;             // for the end of the program
 };
 

@@ -104,6 +104,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
   app.add_flag("--limit-jerk", o.limit_jerk, "buffered lookahead keeps Motor[].InvJmax as well");
   add_kinematics_options(app, o);
+  add_card_options(app, o.cards);
   add_drive_options(app, o);
   app.add_flag("--console", o.console, "read on-line commands from standard input and answer each line");
   app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/motion/types.h"
+#include "runtime/tool/acr_options.h"
 
 namespace pmac::tool {
 
@@ -54,6 +55,7 @@ struct RunOptions {
   std::string drive;                                          // --drive NAME, and NAME=VALUE after the colon
   std::vector<std::pair<std::string, std::string>> drive_settings;
   std::string drive_record;                                   // table of what the simulated drive did
+  CardRunOptions cards;                                       // of ACR1000 runs
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,
