@@ -160,6 +160,7 @@ TEST_CASE("ACR1000: faults between cards have a name each, and none hangs", "[to
   j = json::parse(halted.out);
   CHECK(ids(j["faults"]) == "ACR-E13");
   CHECK(j["time_s"].get<double>() == Approx(6.7124));
+  CHECK(j["faults"][0]["text"].get<std::string>().find("axis Y was stopped by HALT") != std::string::npos);
 }
 
 TEST_CASE("ACR1000: run-time errors of the language stop the card and are named", "[tools]") {
