@@ -28,9 +28,9 @@ int line_number_of(const Thread& thread) {
   return next == labels.begin() ? -1 : static_cast<int>(std::prev(next)->number);
 }
 
-Place place_of(const Thread& thread) { return {thread.source(), line_number_of(thread)}; }
-
 }  // namespace
+
+Place CardHost::place_of(const Thread& thread) { return {thread.source(), line_number_of(thread)}; }
 
 void CardHost::print(std::string_view text) {
   ++outputs_;
@@ -82,7 +82,7 @@ Flow CardHost::card(Thread& thread, CardVerb verb, std::span<const double> x) {
     case CardVerb::kHalt: request = {ProgramRequest::Kind::kHalt, -1}; return Flow::kSuspend;
     case CardVerb::kNew: request = {ProgramRequest::Kind::kErase, -1}; return Flow::kSuspend;
     case CardVerb::kList:
-    case CardVerb::kRenumber: return answer_from_memory(verb);
+    case CardVerb::kRenumber: return answer_from_memory(thread, verb);
     case CardVerb::kCount: break;
   }
   return refuse(thread);
@@ -154,8 +154,9 @@ Flow CardHost::ask_peek(Thread& thread, double address, double count) {
   return Flow::kSuspend;
 }
 
-Flow CardHost::answer_from_memory(CardVerb verb) {
-  if (memory) print(verb == CardVerb::kList ? memory->listing() : memory->renumber());
+Flow CardHost::answer_from_memory(Thread& thread, CardVerb verb) {
+  if (!memory) return fail(thread, "ACR-E09", "LIST and RENUMBER are answered by the console (--console); a program of a file is not kept as text");
+  print(verb == CardVerb::kList ? memory->listing() : memory->renumber());
   return Flow::kContinue;
 }
 

@@ -51,6 +51,8 @@ class CardHost : public runtime::Host {
   double random(double range) override;
   void seed_random(double seed) override;
 
+  static Place place_of(const Thread& thread);
+
   void print(std::string_view text);
   std::uint64_t outputs() const { return outputs_; }
   /// Where the open GSBs of the program were called, the first one first.
@@ -76,7 +78,7 @@ class CardHost : public runtime::Host {
   Flow run(Thread& thread, double line);
   Flow ask_peek(Thread& thread, double address, double count);
   Flow fast_block(Thread& thread, std::string_view digits);
-  Flow answer_from_memory(bytecode::CardVerb verb);
+  Flow answer_from_memory(Thread& thread, bytecode::CardVerb verb);
   std::int64_t parameter(std::size_t number) const { return card_.parameter(number); }
 
   Card& card_;

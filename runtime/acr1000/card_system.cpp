@@ -65,8 +65,11 @@ void CardSystem::halt(std::size_t index) {
 }
 
 void CardSystem::abandon(std::size_t index) {
-  seats_[index].card->driver->abandon();
-  seats_[index].card->drop_waiting();
+  Seat& seat = seats_[index];
+  seat.failed_id = "HALT";
+  seat.failed_at = seat.card->driver->place();
+  seat.card->driver->abandon();
+  seat.card->drop_waiting();
   wake(index);
 }
 

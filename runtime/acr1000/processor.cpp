@@ -85,6 +85,11 @@ std::optional<DriverFault> CardProcessor::execute_now(runtime::ProgramHandle com
   return std::nullopt;
 }
 
+Place CardProcessor::place() const {
+  const bool stands = program_.active() && !executes_line() && !card_.waits();
+  return stands ? CardHost::place_of(program_) : host_.place;
+}
+
 std::uint64_t CardProcessor::position() const {
   std::uint64_t hash = 14695981039346656037u;   // FNV-1a
   const auto add = [&hash](std::uint32_t value) { hash = (hash ^ value) * 1099511628211u; };

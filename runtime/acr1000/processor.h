@@ -24,7 +24,8 @@ class CardProcessor : public CardDriver {
   bool executes_line() const { return line_.active() && !line_waits_; }
 
   DriverStep step(std::uint64_t command_budget) override;
-  Place place() const override { return host_.place; }
+  /// Of a program that runs and waits for nothing: where it stands.
+  Place place() const override;
   bool program_runs() const override { return program_.active(); }
   void halt() override;
   void abandon() override;

@@ -43,6 +43,7 @@ std::string foreign_option(const RunOptions& o) {
   if (o.limit_jerk) return "--limit-jerk";
   if (!o.drive.empty()) return "--drive";
   if (!o.drive_record.empty()) return "--drive-record";
+  if (!o.trace.empty()) return "--trace";
   if (o.fine != motion::FineInterpolation::kThrough) return "--fine";
   if (o.ramp_rule != motion::RampRule::kPower) return "--ramp";
   if (!o.include_dirs.empty()) return "-I";

@@ -160,6 +160,7 @@ TEST_CASE("ACR1000: faults between cards have a name each, and none hangs", "[to
   j = json::parse(halted.out);
   CHECK(ids(j["faults"]) == "ACR-E13");
   CHECK(j["time_s"].get<double>() == Approx(6.7124));
+  CHECK(j["faults"][0]["text"].get<std::string>().find("axis Y was stopped by HALT") != std::string::npos);
 }
 
 TEST_CASE("ACR1000: run-time errors of the language stop the card and are named", "[tools]") {
@@ -260,6 +261,7 @@ TEST_CASE("ACR1000: options that mean nothing to cards, and files that are not t
   const Workspace w;
   w.write("p.x.acr", "VEL 1000\nMOV 1005\n");
   CHECK(w.run("pmac-run", "p.x.acr --limit-jerk").code == 2);
+  CHECK(w.run("pmac-run", "p.x.acr --trace=t.txt").code == 2);
   CHECK(w.run("pmac-run", "p.x.acr --lookahead").code == 2);
   CHECK(w.run("pmac-run", "p.x.acr --axis-limit Q=5").code == 2);
   CHECK(w.run("pmac-run", "none.x.acr").code == 2);
@@ -269,6 +271,37 @@ TEST_CASE("ACR1000: options that mean nothing to cards, and files that are not t
   const ToolResult refused = w.run("pmac-run", "p.x.acr -e 'FLY 5'");
   CHECK(refused.code == 3);
   CHECK(w.run("pmac-run", "p.x.acr -e 'Q> MOV 5'").code == 3);
+}
+
+TEST_CASE("ACR1000: a line of the host is executed while the program waits for a motion", "[tools]") {
+  const Workspace w;
+  w.write("p.x.acr", "10 VEL 1000\n20 MOV 1000\n30 MOV 2000\n40 IF 5 THEN 60\n50 MOV 3000\n60 PRINT \"DONE\"\n");
+  const ToolResult r = w.run("pmac-run", "p.x.acr --json --at 0.5 'SET 5' --at 0.6 'MOV 7' --at 0.7 'LIST'");
+  CHECK(r.code == 3);
+  const json j = json::parse(r.out);
+  CHECK(j["cards"]["X"]["final"] == 2000);
+  REQUIRE(j["refused"].size() == 2);
+  CHECK(j["refused"][0]["command"] == "MOV 7");
+  CHECK(j["refused"][1]["text"].get<std::string>().find("console") != std::string::npos);
+}
+
+TEST_CASE("ACR1000: a loop without an end is named with its line", "[tools]") {
+  const Workspace w;
+  w.write("p.x.acr", "10 VEL 1000\n20 MOV 1000\n30 GOTO 40\n40 GOTO 30\n");
+  const ToolResult r = w.run("pmac-run", "p.x.acr --json");
+  CHECK(r.code == 0);
+  const json j = json::parse(r.out);
+  CHECK(j["status"] == "idle");
+  REQUIRE(j["loops"].size() == 1);
+  CHECK(j["loops"][0]["line"] == 30);
+}
+
+TEST_CASE("ACR1000: two calls of a subroutine with a way back in it are no endless loop", "[tools]") {
+  const Workspace w;
+  w.write("p.x.acr", "10 VEL 1000\n20 GSB 100\n30 GSB 100\n40 MOV 500\n50 GOTO 130\n100 GOTO 120\n110 RET\n120 GOTO 110\n130 REM\n");
+  const json j = json::parse(w.run("pmac-run", "p.x.acr --json").out);
+  CHECK(j["cards"]["X"]["final"] == 500);
+  CHECK(j["loops"].empty());
 }
 
 TEST_CASE("ACR1000: commands of the host go to one card or to all", "[tools]") {
