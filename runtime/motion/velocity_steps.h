@@ -43,7 +43,7 @@ class VelocitySteps {
  private:
   struct Step {
     double place_ms;                      // programmed time
-    std::vector<double> change_mu_ms;     // [motor], absolute, at full rate
+    Row<double> change_mu_ms;             // [motor], absolute, at full rate
     double own_rate = 0;                  // allowed with the steps around it
     bool is_gentle = false;
   };
