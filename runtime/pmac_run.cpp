@@ -146,12 +146,12 @@ int run(const RunOptions& options) {
   runtime::MotionStatistics statistics;
   Recorder recorder(machine);
   Outputs outputs(options, machine, recorder);
-  machine.add_sink(&statistics);
+  if (options.json != JsonDetail::kNone || options.stats) machine.add_sink(&statistics);
   runtime::LimitCheck limit_check([&machine](int motor, double time_ms) { return machine.activity(motor, time_ms); });
   if (options.check_limits) machine.add_sink(&limit_check);
   excuse = &limit_check;
-  machine.add_sink(&recorder);
   emitter.attach(machine, recorder);
+  if (recorder.has_sinks()) machine.add_sink(&recorder);
 
   if (const int code = set_robots(options, machine); code != kExitOk) return code;
   if (const int code = load_files(options, session, machine); code != kExitOk) return code;
