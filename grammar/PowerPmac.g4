@@ -79,6 +79,7 @@ statement
   | label
   | declaration
   | motionLine
+  | PLAIN_MOVES
   | codeLine
   | assignment
   | callStatement
@@ -349,6 +350,8 @@ NUMBER
   | '.' DIGIT+ EXPONENT?
   | HEX
   ;
+/// Many plain move lines, which have been read already (plain_moves.h).
+PLAIN_MOVES : '\u0001' ;
 STRING : '"' (~["\\\r\n] | '\\' ~[\r\n])* '"' ;
 RANGE : '..' ;
 RESET : '$$$' '***'? ;

@@ -18,6 +18,7 @@ enum class Opcode : std::uint16_t;
 enum class Function : std::uint16_t;
 enum class ElementId : std::uint16_t;
 enum class ControlVerb : std::uint16_t;
+enum class CardVerb : std::uint16_t;
 inline constexpr auto kNoFunction = static_cast<Function>(0xffff);
 inline constexpr auto kNoElement = static_cast<ElementId>(0xffff);
 
@@ -165,6 +166,26 @@ struct Symbol {
   bool operator==(const Symbol&) const = default;
 };
 
+/// Consecutive plain move lines (axis letters and numbers, nothing computed): what a part program mostly is, without an instruction a word.
+/// Row r is the block of words first_word[r] .. first_word[r + 1] and stands at line line[r], column column[r] of a file.
+struct MoveRun {
+  std::int32_t file = -1;
+  std::vector<std::uint32_t> first_word;   // ascending; the last entry is words.size()
+  std::vector<std::uint8_t> words;         // move_word_code()
+  std::vector<double> values;              // of the words
+  std::vector<std::uint32_t> line;
+  std::vector<std::uint8_t> column;        // 0: not known (255 and further right)
+  std::size_t row_count() const { return line.size(); }
+  SourceLine source(std::size_t row) const { return {file, static_cast<std::int32_t>(line[row]), column[row]}; }
+  bool operator==(const MoveRun&) const = default;
+};
+inline constexpr std::size_t kMaxRunRows = 16384;
+inline constexpr std::size_t kMaxRunWords = 65536;
+/// A word of a MoveRun: kind in the upper three bits, axis or vector index in the lower five.
+constexpr std::uint8_t move_word_code(WordKind kind, int index) { return static_cast<std::uint8_t>((static_cast<int>(kind) << 5) | index); }
+constexpr WordKind move_word_kind(std::uint8_t code) { return static_cast<WordKind>(code >> 5); }
+constexpr int move_word_index(std::uint8_t code) { return code & 31; }
+
 struct Module {
   std::vector<std::string> files;
   std::vector<double> constants;
@@ -175,6 +196,7 @@ struct Module {
   std::vector<AxisDefinition> axis_definitions;
   std::vector<PointerDefinition> pointer_definitions;
   std::vector<Symbol> symbols;
+  std::vector<MoveRun> move_runs;
   std::vector<Program> programs;                  // buffers in order of their open, and load scripts
   std::vector<std::uint32_t> load_order;          // indices of kOnline programs, in order
   bool operator==(const Module&) const = default;

@@ -16,19 +16,21 @@
 namespace pmac::bytecode {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'M', 'X', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t kFormatVersion = 1;
+inline constexpr std::uint32_t kFormatVersion = 2;
 inline constexpr std::size_t kHeaderSize = 16;
 inline constexpr std::size_t kChunkHeaderSize = 8;
 inline constexpr std::size_t kChunkEntries = 65536;          // entries of one table in one chunk, at most
 inline constexpr std::size_t kChunkTextBytes = 1u << 20;     // a chunk with more text than this is closed
 
-/// CRC-32 (IEEE 802.3), continued from `crc` (0 to begin).
+/// CRC-32 (IEEE 802.3, also that of ZIP archives), continued from `crc` (0 to begin).
 std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t crc = 0);
 
 /// Stands for the rows of opcode.def, function.def and element.def: numbers in a file mean the same rows only if equal.
 std::uint32_t vocabulary_checksum();
 
 void append_header(std::vector<std::uint8_t>& out);
+/// What stands in front of a payload.
+std::vector<std::uint8_t> chunk_header(std::span<const std::uint8_t> payload);
 void append_chunk(std::vector<std::uint8_t>& out, std::span<const std::uint8_t> payload);
 
 /// Reads the frames of an object file; never outside the bytes given.

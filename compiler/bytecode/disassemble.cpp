@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/letters.h"
@@ -51,6 +52,7 @@ class OperandText {
   std::string call() const;
   std::string word() const;
   std::string control() const;
+  std::string card() const;
   std::string letters() const;
 
   const Module& module_;
@@ -104,19 +106,25 @@ std::string OperandText::call() const {
   });
 }
 
-std::string OperandText::word() const {
+std::string word_name(WordKind kind, int index) {
   static constexpr const char* kCenters[] = {"I", "J", "K", "II", "JJ", "KK"};
-  const auto kind = static_cast<WordKind>(in_.c());
-  std::string name(axis_name(in_.b()));
-  if (kind == WordKind::kCenter) name = in_.b() < 6 ? kCenters[in_.b()] : "?";
+  std::string name(axis_name(index));
+  if (kind == WordKind::kCenter) name = index < 6 ? kCenters[index] : "?";
   if (kind == WordKind::kRadius) name = "R";
   if (kind == WordKind::kVelocity) name += " velocity";
   if (kind == WordKind::kTriggerDistance) name += " trigger";
-  return name + ", " + reg(in_.a);
+  return name;
 }
+
+std::string OperandText::word() const { return word_name(static_cast<WordKind>(in_.c()), in_.b()) + ", " + reg(in_.a); }
 
 std::string OperandText::control() const {
   const std::string verb(control_verb_name(static_cast<ControlVerb>(in_.a)));
+  return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
+}
+
+std::string OperandText::card() const {
+  const std::string verb(card_verb_info(static_cast<CardVerb>(in_.a)).text);
   return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
 }
 
@@ -166,6 +174,7 @@ std::string OperandText::text() const {
       return std::string(motion_parameter_name(static_cast<MotionParameter>(in_.b()))) + ", " + reg(in_.a);
     case OperandFormat::kRegWord: return word();
     case OperandFormat::kControl: return control();
+    case OperandFormat::kCard: return card();
     case OperandFormat::kString: return string();
     case OperandFormat::kPortString: return std::to_string(in_.a) + ", " + string();
     case OperandFormat::kRegString: return a_and(string());
@@ -176,6 +185,8 @@ std::string OperandText::text() const {
     case OperandFormat::kWord: return std::to_string(in_.a);
     case OperandFormat::kCodeOf: return letter_name(in_.b()) + " " + reg(in_.a) + ", words from " + std::to_string(in_.c());
     case OperandFormat::kLetters: return letters();
+    case OperandFormat::kRegRun:
+      return a_and(entry(module_.move_runs, [](const MoveRun& run) { return std::to_string(run.row_count()) + " rows"; }));
     case OperandFormat::kProgram: return entry(module_.programs, program_title);
   }
   return {};
@@ -255,14 +266,24 @@ void add_table(std::string& out, const char* title, const std::vector<T>& table,
 }
 
 void add_instruction(std::string& out, const Module& module, const Program& program, std::uint32_t pc) {
-  const Instruction& in = program.code[pc];
-  const std::string operands = OperandText(module, program, in).text();
-  std::string line = right_aligned(std::to_string(pc), 6) + "  ";
-  line += operands.empty() ? std::string(opcode_info(in.op).text) : padded(std::string(opcode_info(in.op).text), 14) + operands;
+  std::string line = right_aligned(std::to_string(pc), 6) + "  " + instruction_text(module, program, program.code[pc]);
   const SourceLine source = source_of(program, pc);
   const bool starts_line = pc == 0 || !(source == source_of(program, pc - 1));
   if (starts_line && source.file >= 0) line = padded(line, kSourceColumn) + "  ; " + to_string(module, source);
   out += line + "\n";
+}
+
+void add_move_run(std::string& out, const Module& module, std::size_t number) {
+  const MoveRun& run = module.move_runs[number];
+  out += "move run " + std::to_string(number) + ": " + std::to_string(run.row_count()) + " rows\n";
+  const std::size_t rows = std::min({run.row_count(), run.column.size(), std::max<std::size_t>(run.first_word.size(), 1) - 1});
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::string line = right_aligned(std::to_string(row), 6) + " ";
+    for (std::size_t i = run.first_word[row]; i < std::min<std::size_t>(run.first_word[row + 1], std::min(run.words.size(), run.values.size())); ++i)
+      line += " " + word_name(move_word_kind(run.words[i]), move_word_index(run.words[i])) + " " + number_text(run.values[i]);
+    out += padded(line, kSourceColumn) + "  ; " + to_string(module, run.source(row)) + "\n";
+  }
+  out += "\n";
 }
 
 std::vector<LabelEntry> labels_by_place(const Program& program) {
@@ -288,6 +309,12 @@ void add_program(std::string& out, const Module& module, const Program& program)
 
 }  // namespace
 
+std::string instruction_text(const Module& module, const Program& program, const Instruction& in) {
+  const std::string operands = OperandText(module, program, in).text();
+  const std::string name(opcode_info(in.op).text);
+  return operands.empty() ? name : padded(name, 14) + operands;
+}
+
 std::string disassemble(const Module& module) {
   std::string out;
   add_table(out, "files", module.files, [](const std::string& name) { return name; });
@@ -295,6 +322,7 @@ std::string disassemble(const Module& module) {
   add_table(out, "axis definitions", module.axis_definitions, axis_definition_text);
   add_table(out, "pointer definitions", module.pointer_definitions,
             [&](const PointerDefinition& definition) { return pointer_text(module, definition); });
+  for (std::size_t i = 0; i < module.move_runs.size(); ++i) add_move_run(out, module, i);
   for (const Program& program : module.programs) add_program(out, module, program);
   if (!module.load_order.empty()) {
     out += "load order:";

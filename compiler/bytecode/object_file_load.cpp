@@ -49,6 +49,7 @@ class ChunkContents {
   void read_definitions(const file::Definitions& definitions);
   void read_symbols(const file::Symbols& symbols);
   void read_program(const file::Program& program);
+  void read_move_run(const file::MoveRun& source);
   void read_end(const file::End& end, std::uint32_t chunks_before);
   Program& open_program();
 
@@ -67,6 +68,15 @@ class ChunkContents {
     if (entries->size() > kChunkEntries) throw BadContents{"holds an oversized table"};
     spend(entries->size() * sizeof(std::uint32_t));
     return entries->size();
+  }
+  template <class T>
+  std::vector<T> column(const flatbuffers::Vector<T>* source) {
+    if (source == nullptr) return {};
+    if (source->size() > kMaxRunWords) throw BadContents{"holds an oversized table"};
+    spend(source->size() * sizeof(T));
+    std::vector<T> result(source->size());
+    for (flatbuffers::uoffset_t i = 0; i < source->size(); ++i) result[i] = source->Get(i);
+    return result;
   }
   template <class Struct, class T>
   void append(const flatbuffers::Vector<const Struct*>* source, std::vector<T>& to) {
@@ -133,6 +143,16 @@ void ChunkContents::read_program(const file::Program& source) {
   if (source.source() != nullptr) program.source = unpack(*source.source());
 }
 
+void ChunkContents::read_move_run(const file::MoveRun& source) {
+  MoveRun& run = module_.move_runs.emplace_back();
+  run.file = source.file();
+  run.first_word = column(source.first_word());
+  run.words = column(source.words());
+  run.values = column(source.values());
+  run.line = column(source.line());
+  run.column = column(source.column());
+}
+
 Program& ChunkContents::open_program() {
   if (module_.programs.empty()) throw BadContents{"holds code outside a program"};
   return module_.programs.back();
@@ -155,6 +175,7 @@ bool ChunkContents::read(const file::Chunk& chunk, std::uint32_t chunks_before) 
     case file::Body::Lines: append(chunk.body_as_Lines()->lines(), open_program().lines); return false;
     case file::Body::Labels: append(chunk.body_as_Labels()->labels(), open_program().labels); return false;
     case file::Body::End: read_end(*chunk.body_as_End(), chunks_before); return true;
+    case file::Body::MoveRun: read_move_run(*chunk.body_as_MoveRun()); return false;
     case file::Body::NONE: break;
   }
   throw BadContents{"holds an unknown chunk"};

@@ -13,8 +13,15 @@ using flatbuffers::Offset;
 
 class Writer {
  public:
-  std::vector<std::uint8_t> bytes;
+  explicit Writer(const ByteSink& sink) : sink_(sink) {}
+
   std::uint32_t chunk_count = 0;
+
+  void header() {
+    std::vector<std::uint8_t> bytes;
+    append_header(bytes);
+    sink_(bytes);
+  }
 
   /// make_body fills the builder and returns the offset of a table of the union's type.
   template <class MakeBody>
@@ -22,11 +29,14 @@ class Writer {
     builder_.Clear();
     const auto body = make_body(builder_);
     builder_.Finish(file::CreateChunk(builder_, type, body.Union()));
-    append_chunk(bytes, {builder_.GetBufferPointer(), builder_.GetSize()});
+    const std::span<const std::uint8_t> payload(builder_.GetBufferPointer(), builder_.GetSize());
+    sink_(chunk_header(payload));
+    sink_(payload);
     ++chunk_count;
   }
 
  private:
+  const ByteSink& sink_;
   FlatBufferBuilder builder_;
 };
 
@@ -168,6 +178,13 @@ void save_program(Writer& writer, const Program& program) {
   });
 }
 
+void save_move_run(Writer& writer, const MoveRun& run) {
+  writer.add(file::Body::MoveRun, [&](auto& b) {
+    return file::CreateMoveRun(b, run.file, b.CreateVector(run.first_word), b.CreateVector(run.words), b.CreateVector(run.values), b.CreateVector(run.line),
+                               b.CreateVector(run.column));
+  });
+}
+
 void save_end(Writer& writer, const Module& module) {
   const std::uint32_t before = writer.chunk_count;
   writer.add(file::Body::End, [&](auto& b) { return file::CreateEnd(b, before, b.CreateVector(module.load_order)); });
@@ -175,17 +192,23 @@ void save_end(Writer& writer, const Module& module) {
 
 }  // namespace
 
-std::vector<std::uint8_t> save(const Module& module) {
-  Writer writer;
-  append_header(writer.bytes);
+void save(const Module& module, const ByteSink& sink) {
+  Writer writer(sink);
+  writer.header();
   save_names(writer, module);
   save_constants(writer, module);
   save_references(writer, module);
   save_definitions(writer, module);
   save_symbols(writer, module);
+  for (const MoveRun& run : module.move_runs) save_move_run(writer, run);
   for (const Program& program : module.programs) save_program(writer, program);
   save_end(writer, module);
-  return std::move(writer.bytes);
+}
+
+std::vector<std::uint8_t> save(const Module& module) {
+  std::vector<std::uint8_t> bytes;
+  save(module, [&](std::span<const std::uint8_t> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
+  return bytes;
 }
 
 }  // namespace pmac::bytecode

@@ -19,7 +19,8 @@ enum class OperandFormat : std::uint8_t {
   kFunc, kJump, kRegJump, kLoop, kRegLoop, kTarget, kCallTarget, kRegSync,
   kMoveMode, kAxisMask, kRegMotion, kRegWord, kControl, kString, kPortString, kRegString,
   kAxisDef, kPointerDef, kProgram,
-  kRegWordOf, kWordJump, kWord, kCodeOf, kLetters,
+  kRegWordOf, kWordJump, kWord, kCodeOf, kLetters, kRegRun,
+  kCard,
 };
 
 struct OpcodeInfo { std::string_view text; OperandFormat format; std::string_view meaning; };

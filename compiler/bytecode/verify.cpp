@@ -78,6 +78,33 @@ std::string verify_symbol(const Module&, const Symbol& symbol) {
   return symbol.kind < SymbolKind::kCount ? std::string() : "no such kind of symbol";
 }
 
+bool is_move_word(std::uint8_t code) {
+  const int index = move_word_index(code);
+  switch (move_word_kind(code)) {
+    case WordKind::kTarget:
+    case WordKind::kVelocity:
+    case WordKind::kTriggerDistance: return true;
+    case WordKind::kCenter: return index < 6;
+    case WordKind::kRadius: return index == 0;
+    default: return false;
+  }
+}
+
+std::string verify_run(const Module& module, const MoveRun& run) {
+  const std::size_t rows = run.row_count();
+  if (rows == 0 || rows > kMaxRunRows || run.words.size() > kMaxRunWords) return "wrong number of rows";
+  if (run.first_word.size() != rows + 1 || run.column.size() != rows || run.values.size() != run.words.size()) return "columns differ in length";
+  if (run.file < 0 || static_cast<std::size_t>(run.file) >= module.files.size()) return "no such file";
+  if (run.first_word.front() != 0 || run.first_word.back() != run.words.size()) return "rows do not share out the words";
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (run.first_word[row] >= run.first_word[row + 1]) return "a row has no words";
+    if (run.line[row] > 0x7fffffffu) return "wrong line";
+  }
+  for (const std::uint8_t code : run.words)
+    if (!is_move_word(code)) return "no such word";
+  return {};
+}
+
 /// First complaint of check(module, entry) over a table, with the entry's place.
 template <class T, class Check>
 std::string verify_table(const Module& module, const std::vector<T>& table, const char* what, Check check) {
@@ -100,6 +127,7 @@ std::string verify_tables(const Module& module) {
   if (auto why = verify_table(module, module.pointer_definitions, "pointer definition", verify_pointer); !why.empty()) {
     return why;
   }
+  if (auto why = verify_table(module, module.move_runs, "move run", verify_run); !why.empty()) return why;
   return verify_table(module, module.symbols, "symbol", verify_symbol);
 }
 

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
@@ -307,6 +308,26 @@ void ProgramWriter::write(const ir::Move& node, const source::Span&) {
   emit_imm(Opcode::kBlockEnd, 0, 0);
 }
 
+/// A row counter, and for each run a loop over its rows:  load.int t,0  row.words t,run  block.end  row.loop t
+void ProgramWriter::write(const ir::MoveRows& node, const source::Span& span) {
+  const Register row = take();
+  const bytecode::SourceLine first = tables_.line(span);
+  const std::int64_t shown_further = first.line - static_cast<std::int64_t>(node.runs->front().line.front());  // #line
+  for (bytecode::MoveRun& run : *node.runs) {
+    run.file = first.file;
+    for (std::uint32_t& line : run.line) line = static_cast<std::uint32_t>(std::max<std::int64_t>(0, line + shown_further));
+    const auto pc = static_cast<std::uint32_t>(code_.size());
+    if (!lines_.empty() && lines_.back().pc == pc) lines_.pop_back();
+    lines_.push_back({pc, run.source(0)});
+    tables_.module().move_runs.push_back(std::move(run));
+    emit_imm(Opcode::kLoadInt, row, 0);
+    const std::size_t begin = emit_imm(Opcode::kRowWords, row, static_cast<std::int64_t>(tables_.module().move_runs.size()) - 1);
+    emit_imm(Opcode::kBlockEnd, 0, 0);
+    emit_imm(Opcode::kRowLoop, row, static_cast<std::int64_t>(begin));
+  }
+  node.runs->clear();
+}
+
 void ProgramWriter::write(const ir::Dwell& node, const source::Span&) { emit_imm(Opcode::kDwell, value(*node.time_ms), 0); }
 void ProgramWriter::write(const ir::Delay& node, const source::Span&) { emit_imm(Opcode::kDelay, value(*node.time_ms), 0); }
 
@@ -321,6 +342,26 @@ void ProgramWriter::write(const ir::Control& node, const source::Span&) {
     else load_number(std::numeric_limits<double>::quiet_NaN(), first + i);
   }
   emit_abc(Opcode::kControl, static_cast<Register>(node.verb), first, count);
+}
+
+void ProgramWriter::write(const ir::CardAction& node, const source::Span&) {
+  const auto count = static_cast<unsigned>(bytecode::card_verb_info(node.verb).argument_count);
+  const Register first = take(count);
+  for (Register i = 0; i < count; ++i) {
+    const ir::Expr* argument = i < node.arguments.size() ? node.arguments[i].get() : nullptr;
+    if (argument) value_into(*argument, first + i);
+    else load_number(std::numeric_limits<double>::quiet_NaN(), first + i);
+  }
+  emit_abc(Opcode::kCard, static_cast<Register>(node.verb), first, count);
+}
+
+void ProgramWriter::write(const ir::RelayCondition& node, const source::Span&) {
+  const Register set = take();
+  emit_abc(Opcode::kRelayTest, set, value(*node.relay));
+  Target end;
+  jump_to(Opcode::kJumpIfFalse, set, end);
+  body(node.rest);
+  place(end);
 }
 
 void ProgramWriter::write(const ir::Evaluate& node, const source::Span&) { value_into(*node.value, take()); }

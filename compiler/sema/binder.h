@@ -47,6 +47,7 @@ class Binder {
   void bind(ir::SetParameter& node, const source::Span& span);
   void bind(ir::SetNormal& node, const source::Span& span);
   void bind(ir::Move& node, const source::Span& span);
+  void bind(ir::MoveRows&, const source::Span&) {}  // constants in a prog or subprog buffer
   void bind(ir::Dwell& node, const source::Span& span);
   void bind(ir::Delay& node, const source::Span& span);
   void bind(ir::Evaluate& node, const source::Span& span);

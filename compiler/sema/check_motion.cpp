@@ -30,6 +30,7 @@ class MotionCheck {
     if (const auto* mode = std::get_if<ir::SetMode>(&statement.node)) mode_ = mode->mode;
     else if (const auto* parameter = std::get_if<ir::SetParameter>(&statement.node)) check_parameter(*parameter);
     else if (const auto* move = std::get_if<ir::Move>(&statement.node)) check_move(*move, statement.span);
+    else if (const auto* rows = std::get_if<ir::MoveRows>(&statement.node)) check_rows(*rows);
     else if (const auto* block = std::get_if<ir::Block>(&statement.node)) run(block->body);
     else if (const auto* branch = std::get_if<ir::If>(&statement.node)) run_if(*branch);
     else if (const auto* loop = std::get_if<ir::While>(&statement.node)) run_loop(*loop->body);
@@ -107,7 +108,7 @@ class MotionCheck {
     });
     const bool has_centre = has([&](const ir::Word& w) { return w.kind == WordKind::kRadius || (w.kind == WordKind::kCenter && (w.index >= 3) == second_set); });
     if ((first_set || second_set) && moves_in_plane && !has_centre)
-      diagnostics_.error("PM4001", span, second_set ? "circle move without a centre; add II and JJ" : "circle move without a centre; add I and J, or R");
+      report_missing_centre(span, second_set);
     const bool no_circle = mode_ && !first_set && !second_set;
     for (const ir::Word& word : move.words) {
       const bool circle_word = word.kind == WordKind::kCenter || word.kind == WordKind::kRadius;
@@ -115,6 +116,21 @@ class MotionCheck {
       if (mode_ && *mode_ != MoveMode::kPvt && word.kind == WordKind::kVelocity) diagnostics_.warning("PM4004", word.span, "an end velocity belongs to pvt mode");
       if (mode_ && *mode_ != MoveMode::kRapid && word.kind == WordKind::kTriggerDistance) diagnostics_.warning("PM4004", word.span, "a move until trigger belongs to rapid mode");
     }
+  }
+
+  void report_missing_centre(const source::Span& span, bool second_set) {
+    diagnostics_.error("PM4001", span, second_set ? "circle move without a centre; add II and JJ" : "circle move without a centre; add I and J, or R");
+  }
+
+  /// As check_move, said once for all rows.
+  void check_rows(const ir::MoveRows& rows) {
+    const bool first_set = mode_ == MoveMode::kCircle1 || mode_ == MoveMode::kCircle2;
+    const bool second_set = mode_ == MoveMode::kCircle3 || mode_ == MoveMode::kCircle4;
+    const source::Span& missing = rows.without_centre[second_set ? 1 : 0];
+    if ((first_set || second_set) && missing.valid()) report_missing_centre(missing, second_set);
+    const bool no_circle = mode_ && !first_set && !second_set;
+    if (no_circle && rows.first_centre.valid())
+      diagnostics_.warning("PM4003", rows.first_centre, fmt::format("the circle words of this line and of lines behind it do nothing in {} mode", bytecode::move_mode_name(*mode_)));
   }
 
   source::Diagnostics& diagnostics_;
@@ -140,12 +156,17 @@ class ServedAxes {
       if (branch->otherwise) run(*branch->otherwise);
     }
     if (const auto* line = std::get_if<ir::LineCondition>(&statement.node)) run(line->rest);
+    if (const auto* rows = std::get_if<ir::MoveRows>(&statement.node))
+      for (const ir::MoveRows::AxisUse& use : rows->first_targets) check_axis(use.axis, use.span);
     const auto* move = std::get_if<ir::Move>(&statement.node);
     if (!move) return;
-    for (const ir::Word& word : move->words) {
-      const bool unserved = word.kind == WordKind::kTarget && !project_.defined_axes.contains(word.index) && project_.reported_axes.insert(word.index).second;
-      if (unserved) diagnostics_.warning("PM6003", word.span, fmt::format("no motor is assigned to axis {}; the move will have no effect on it", bytecode::axis_name(word.index)));
-    }
+    for (const ir::Word& word : move->words)
+      if (word.kind == WordKind::kTarget) check_axis(word.index, word.span);
+  }
+
+  void check_axis(int axis, const source::Span& span) {
+    const bool unserved = !project_.defined_axes.contains(axis) && project_.reported_axes.insert(axis).second;
+    if (unserved) diagnostics_.warning("PM6003", span, fmt::format("no motor is assigned to axis {}; the move will have no effect on it", bytecode::axis_name(axis)));
   }
 
   Project& project_;

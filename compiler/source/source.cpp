@@ -19,8 +19,8 @@ Span join(const Span& first, const Span& last) {
 std::int32_t SourceManager::add_file(std::string name, std::string text, Span included_from) {
   File file{std::move(name), decode_text(std::move(text)), included_from, {0}, {}};
   if (file.text.starts_with("\xef\xbb\xbf")) file.line_starts[0] = 3;
-  for (std::size_t i = 0; i < file.text.size(); ++i)
-    if (file.text[i] == '\n') file.line_starts.push_back(static_cast<std::uint32_t>(i + 1));
+  file.line_starts.reserve(static_cast<std::size_t>(std::count(file.text.begin(), file.text.end(), '\n')) + 1);
+  for (std::size_t at = file.text.find('\n'); at != std::string::npos; at = file.text.find('\n', at + 1)) file.line_starts.push_back(static_cast<std::uint32_t>(at + 1));
   files_.push_back(std::move(file));
   return static_cast<std::int32_t>(files_.size() - 1);
 }

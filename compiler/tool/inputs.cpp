@@ -32,7 +32,11 @@ std::string read_file(const std::string& name) {
   if (std::filesystem::is_directory(name, error)) throw UsageError(fmt::format("cannot read {}: it is a directory", name));
   std::ifstream stream(name, std::ios::binary);
   if (!stream) throw UsageError(fmt::format("cannot read {}", name));
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text;
+  const auto size = std::filesystem::file_size(name, error);
+  if (!error) text.reserve(size);
+  char buffer[65536];
+  while (stream.read(buffer, sizeof buffer), stream.gcount() > 0) text.append(buffer, static_cast<std::size_t>(stream.gcount()));
   if (stream.bad()) throw UsageError(fmt::format("cannot read {}", name));
   return text;
 }
@@ -47,13 +51,17 @@ std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& nam
 }
 
 void write_file(const std::string& name, std::string_view bytes) {
+  write_file(name, [&](const ByteWriter& write) { write(bytes); });
+}
+
+void write_file(const std::string& name, const std::function<void(const ByteWriter&)>& content) {
   std::error_code error;
   const std::filesystem::path known = std::filesystem::canonical(name, error);  // a link keeps pointing at the file
   const std::string target = error ? name : known.string();
   const bool exists = !error;
   const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
   std::ofstream stream(temporary, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  content([&](std::string_view bytes) { stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
   stream.close();
   error.clear();
   if (stream && exists) std::filesystem::permissions(temporary, std::filesystem::status(target).permissions(), error);

@@ -1,6 +1,7 @@
 // Files in and out of pmacc.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& nam
 
 /// Writes under another name first, so that a file of the wanted name is always whole. Throws UsageError.
 void write_file(const std::string& name, std::string_view bytes);
+/// The same with bytes that come piece by piece.
+using ByteWriter = std::function<void(std::string_view)>;
+void write_file(const std::string& name, const std::function<void(const ByteWriter&)>& content);
 
 /// Throws UsageError when the output would replace one of the sources.
 void refuse_to_overwrite(const std::vector<std::string>& sources, const std::string& output);

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
-#include "runtime/gather/gnuplot.h"
+#include "runtime/gather/plot_text.h"
 #include "runtime/gather/series.h"
 
 namespace pmac::runtime {
@@ -20,35 +19,6 @@ constexpr std::array<const char*, 8> kColors = {"#0072B2", "#D55E00", "#009E73",
                                                 "#E69F00", "#56B4E9", "#000000", "#8C6D00"};
 
 struct Box { double left, bottom, right, top; };  // fractions of the picture
-
-std::string number(double value) {
-  if (!std::isfinite(value)) return "NaN";
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
-
-/// A text in gnuplot's single quotes.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char ch : text) result += ch == '\'' ? std::string("''") : std::string(1, ch == '\n' ? ' ' : ch);
-  return result + "'";
-}
-
-std::string terminal(const PlotData& data, PlotFormat format) {
-  const bool is_wide = data.path.has_value() && data.time_panels;
-  const std::string size = is_wide ? "1440,720" : "900,720";
-  if (format == PlotFormat::kPng) return "set terminal pngcairo noenhanced size " + size + " font 'DejaVu Sans,11' linewidth 1.2\n";
-  return "set terminal svg noenhanced size " + size + " dynamic font 'DejaVu Sans,Helvetica,Arial,sans-serif,14' "
-         "background '#ffffff' linewidth 1.2\n";
-}
-
-std::string common_settings() {
-  return "set datafile missing 'NaN'\n"
-         "set grid linetype 1 linecolor rgb '#e2e2e2' linewidth 0.6\n"
-         "set border linecolor rgb '#606060' linewidth 0.8\n"
-         "set tics textcolor rgb '#303030' nomirror\n"
-         "set key bottom right horizontal samplen 1.6\n";
-}
 
 std::string margins(const Box& box) {
   return "set lmargin at screen " + number(box.left) + "\nset rmargin at screen " + number(box.right) +
@@ -187,25 +157,6 @@ void check(const PlotData& data) {
   if (!data.path && !data.time_panels) throw std::invalid_argument("there is nothing to draw");
 }
 
-std::string html_text(const std::string& text) {
-  std::string result;
-  for (const char ch : text) {
-    if (ch == '<') result += "&lt;";
-    else if (ch == '&') result += "&amp;";
-    else result += ch;
-  }
-  return result;
-}
-
-/// A page that holds the picture itself.
-std::string html_page(const PlotData& data, const std::string& svg) {
-  const std::size_t start = svg.find("<svg");
-  const std::string title = html_text(data.title.empty() ? "Motion" : data.title);
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + title +
-         "</title>\n<style>body{margin:1rem;background:#fff} svg{width:100%;height:auto;max-height:95vh}</style>\n</head>\n<body>\n" +
-         svg.substr(start == std::string::npos ? 0 : start) + "\n</body>\n</html>\n";
-}
-
 }  // namespace
 
 std::optional<PlotFormat> plot_format_of(std::string_view path) {
@@ -221,7 +172,7 @@ std::string plot_script(const PlotData& data, PlotFormat format) {
   check(data);
   const bool has_both = data.path.has_value() && data.time_panels;
   const double top = data.title.empty() ? 0.945 : 0.905;
-  std::string script = "set encoding utf8\n" + terminal(data, format) + common_settings();
+  std::string script = "set encoding utf8\n" + terminal(has_both, format) + common_settings();
   script += data.title.empty() ? "set multiplot\n" : "set multiplot title " + quoted(data.title) + " font ',16'\n";
   if (data.path) add_path_panel(script, data, {has_both ? 0.06 : 0.11, 0.09, has_both ? 0.47 : 0.97, top});
   if (data.time_panels) add_time_panels(script, data, {has_both ? 0.565 : 0.11, 0.09, 0.985, top});
@@ -229,10 +180,7 @@ std::string plot_script(const PlotData& data, PlotFormat format) {
 }
 
 void draw(const PlotData& data, PlotFormat format, const std::string& path) {
-  const std::string picture = run_gnuplot(plot_script(data, format));
-  OutputFile file(path);
-  file.write(format == PlotFormat::kHtml ? html_page(data, picture) : picture);
-  file.commit();
+  write_picture(plot_script(data, format), format, path, data.title);
 }
 
 }  // namespace pmac::runtime

@@ -106,6 +106,35 @@ void InterpreterCore::read_words(double letters) {
   thread_.d[0] = static_cast<double>(found);
 }
 
+// --- plain move lines -----------------------------------------------------------------------------------------------------
+
+/// The words of a row, one after the other as the words of a move line; then the register says which row comes next.
+InterpreterCore::Next InterpreterCore::put_row(const Instruction& in, double* r) {
+  const bytecode::MoveRun& run = thread_.program_.module->move_runs[static_cast<std::size_t>(in.imm)];
+  const double number = r[in.a];
+  if (!(number >= 0 && number < static_cast<double>(run.row_count()))) return fault("this row of moves does not exist");
+  const auto row = static_cast<std::size_t>(number);
+  const bool for_cycle = thread_.cycle_.armed && thread_.code_depth_ == 0;
+  for (std::size_t i = run.first_word[row]; i < run.first_word[row + 1]; ++i) {
+    const std::uint8_t word = run.words[i];
+    const auto as_word = Instruction::with_bc(bytecode::Opcode::kAxisWord, 0, static_cast<unsigned>(bytecode::move_word_index(word)), static_cast<unsigned>(bytecode::move_word_kind(word)));
+    const Next next = for_cycle ? collect_cycle_word(as_word, run.values[i]) : after(host_.motion(thread_, as_word, {&run.values[i], 1}));
+    if (next == Next::kLeave) return next;
+  }
+  r[in.a] = row + 1 == run.row_count() ? 0.0 : number + 1;
+  return Next::kContinue;
+}
+
+/// A program that waits behind a row stands at the next row, as it stands at the next line elsewhere.
+void InterpreterCore::stand_at_next_row() {
+  const std::vector<Instruction>& code = program().code;
+  const std::uint32_t pc = thread_.pc_;
+  const bool behind_row = pc >= 2 && pc < code.size() && code[pc - 1].op == bytecode::Opcode::kBlockEnd && code[pc - 2].op == bytecode::Opcode::kRowWords;
+  const bool at_loop = behind_row && (code[pc].op == bytecode::Opcode::kRowLoop || code[pc].op == bytecode::Opcode::kLoopIfTrue) && code[pc].imm + 2 == static_cast<std::int64_t>(pc);
+  if (!at_loop) return;
+  thread_.pc_ = registers()[code[pc].a] != 0 ? pc - 2 : pc + 1;
+}
+
 // --- code letters ---------------------------------------------------------------------------------------------------------
 
 /// F calls a subprogram where Coord[].Fprog names one; inside of that F is the feed rate.

@@ -12,6 +12,8 @@ bool is_same_line(const bytecode::SourceLine& a, const bytecode::SourceLine& b) 
 
 void stop_at_other_lines(bytecode::Program& program, const bytecode::SourceLine& here) {
   unfuse(program);
+  for (bytecode::Instruction& in : program.code)
+    if (in.op == bytecode::Opcode::kRowLoop) in.op = bytecode::Opcode::kLoopIfTrue;
   for (const bytecode::LineEntry& entry : program.lines) {
     const auto pc = static_cast<std::int32_t>(entry.pc);
     if (!is_same_line(entry.source, here)) program.code[entry.pc] = bytecode::Instruction::with_imm(bytecode::Opcode::kLoop, 0, pc);
@@ -36,7 +38,9 @@ RunResult Thread::run_line(Host& host, std::uint64_t instruction_budget) {
   for (bytecode::Program& program : copy->programs) stop_at_other_lines(program, source());
   replace_module(module, copy);
   reset_jump_backs();
+  one_line_ = true;
   RunResult result = run(host, instruction_budget, 1);
+  one_line_ = false;
   replace_module(copy, module);
   return result;
 }

@@ -1,3 +1,4 @@
+#include "compiler/bytecode/opcode.h"
 #include "runtime/interpreter/core.h"
 
 namespace pmac::runtime {
@@ -46,8 +47,22 @@ RunResult Thread::run(Host& host, std::uint64_t instruction_budget, std::int64_t
   return InterpreterCore(*this, host, instruction_budget, jump_back_limit).run();
 }
 
+/// The row of a move run that stands at pc_, or is being executed there; nullopt: no row.
+std::optional<bytecode::SourceLine> Thread::row_source() const {
+  const std::vector<bytecode::Instruction>& code = program_.program->code;
+  const bool at_end = pc_ > 0 && code[pc_].op == bytecode::Opcode::kBlockEnd && code[pc_ - 1].op == bytecode::Opcode::kRowWords;
+  if (!at_end && code[pc_].op != bytecode::Opcode::kRowWords) return std::nullopt;
+  const bytecode::Instruction& in = code[at_end ? pc_ - 1 : pc_];
+  const bytecode::MoveRun& run = program_.module->move_runs[static_cast<std::size_t>(in.imm)];
+  const double next = stack_[base_ + in.a];  // behind row.words: the row after, or 0 behind the last
+  const double row = !at_end ? next : next == 0 ? static_cast<double>(run.row_count()) - 1 : next - 1;
+  return row >= 0 && row < static_cast<double>(run.row_count()) ? std::optional(run.source(static_cast<std::size_t>(row))) : std::nullopt;
+}
+
 bytecode::SourceLine Thread::source() const {
-  return program_ ? bytecode::source_of(*program_.program, pc_) : bytecode::SourceLine{};
+  if (!program_) return {};
+  if (const auto row = row_source()) return *row;
+  return bytecode::source_of(*program_.program, pc_);
 }
 
 double& Thread::local(int i) { return stack_[base_ + static_cast<std::size_t>(i)]; }
@@ -55,6 +70,16 @@ double& Thread::local(int i) { return stack_[base_ + static_cast<std::size_t>(i)
 double& Thread::outgoing(int i) {
   const ProgramHandle& running = program_ ? program_ : top_;
   return stack_[base_ + running.program->frame_size + static_cast<std::size_t>(i)];
+}
+
+Flow Host::card(Thread& thread, bytecode::CardVerb, std::span<const double>) {
+  thread.set_host_fault({FaultKind::kNotSimulated, {}, "this is an instruction for an ACR1000 card, and the program runs on no card"});
+  return Flow::kFault;
+}
+
+double Host::relay(Thread& thread, double) {
+  thread.set_host_fault({FaultKind::kNotSimulated, {}, "this asks for a relay of an ACR1000 card, and the program runs on no card"});
+  return 0;
 }
 
 }  // namespace pmac::runtime

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/interruption.h"
+
 namespace pmac::motion {
 namespace {
 
@@ -154,6 +156,7 @@ void Lookahead::append(PreparedSegment prepared) {
 }
 
 void Lookahead::append_part(PreparedSegment prepared, RateLimits limits, bool may_be_divided) {
+  runtime::poll_interruption();
   Interval next{std::move(prepared.segment), prepared.accel_share, std::move(limits), prepared.speed_ratio * prepared.speed_ratio};
   next.may_be_divided = may_be_divided;
   next.start_bound = std::min(next.limits.max_rate2, prepared.max_start_rate * prepared.max_start_rate);
@@ -252,6 +255,7 @@ void Lookahead::backward(double end_beta) {
 }
 
 void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
+  runtime::poll_interruption();
   if (intervals_.front().may_be_divided && (is_slowed(0, end_beta) || (!at_start_ && rate2_ < kFullRate2))) divide_first(end_beta);
   if (at_start_) rate2_ = intervals_.front().beta;
   at_start_ = false;

@@ -1,5 +1,6 @@
 #include "runtime/tool/options.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <CLI/CLI.hpp>
@@ -12,11 +13,13 @@ constexpr const char* kFooter = R"(Examples:
   pmac-run contour.pmx -e '&1 b4r' --stats --record contour.csv
   pmac-run laser.pmc -e 'LoopCtrlInput=1 &1 b3r' --at 2.5 'LoopCtrlInput=0' --json
   pmac-run moves.pmc -e '&1 b1r' --emit=path
+  pmac-run contour.pmc -e '&1 b4r' --drive silverlode:max_speed=3000,max_accel=3000 --emit=frames
 
 Exit codes: 0 ok, 1 errors in the program, 2 usage or unreadable file, 3 simulated fault, limit or refused command,
-4 time or instruction limit reached, 70 internal error, 130 interrupted.)";
+4 a limit of time, instructions, moves, memory or output reached, 70 internal error, 130 interrupted.)";
 
 constexpr double kMaxSeconds = 1e9;
+constexpr std::uint64_t kMaxMib = 1u << 30;
 
 std::string check_seconds(const std::string& text) {
   char* end = nullptr;
@@ -38,6 +41,38 @@ void add_kinematics_options(CLI::App& app, RunOptions& o) {
   app.add_option("--kin-condition", check.condition, "condition number above which a pose counts as singular")->check(CLI::Range(1.0, 1e15))->capture_default_str();
 }
 
+void add_drive_options(CLI::App& app, RunOptions& o) {
+  app.add_option("--drive", o.drive, "encode the motion for a drive and execute it on the simulated drive; 'list' lists drives and settings")
+      ->type_name("DRIVE[:NAME=VALUE,...]");
+  app.add_option("--drive-record", o.drive_record, "write what the simulated drive did to a .csv, .npz or .txt file")->type_name("FILE");
+}
+
+/// Parts the text of --drive into name and settings. Returns what is wrong with it, or nothing.
+std::string split_drive(RunOptions& o) {
+  const std::size_t colon = o.drive.find(':');
+  std::string rest = colon == std::string::npos ? std::string() : o.drive.substr(colon + 1);
+  o.drive.resize(std::min(colon, o.drive.size()));
+  for (std::size_t at = 0; at < rest.size();) {
+    const std::size_t comma = std::min(rest.find(',', at), rest.size());
+    const std::string part = rest.substr(at, comma - at);
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos || equals == 0) return "'" + part + "' is no setting; write NAME=VALUE";
+    o.drive_settings.emplace_back(part.substr(0, equals), part.substr(equals + 1));
+    at = comma + 1;
+  }
+  if (colon != std::string::npos && o.drive.empty()) return "the name of the drive is missing";
+  return {};
+}
+
+/// What does not go together around --drive, or nothing.
+std::string drive_misuse(RunOptions& o) {
+  if (const std::string bad = split_drive(o); !bad.empty()) return "--drive: " + bad;
+  if (!o.drive.empty()) return {};
+  if (o.emit == "frames") return "--emit=frames goes with --drive";
+  if (!o.drive_record.empty()) return "--drive-record goes with --drive";
+  return {};
+}
+
 }  // namespace
 
 std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
@@ -51,11 +86,17 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--at", at, "on-line commands at a simulated time in seconds")->type_name("TIME COMMANDS")->type_size(2)->expected(0, 10'000'000)->allow_extra_args(false);
   app.add_option("--until", until, "run to this simulated time in seconds, or until idle")->type_name("idle|TIME")->capture_default_str();
   app.add_option("--max-time", max_time, "give up at this simulated time in seconds")->type_name("TIME")->capture_default_str();
-  app.add_option("--max-instructions", o.max_instructions, "give up after so many instructions")->capture_default_str();
+  app.add_option("--max-instructions", o.max_instructions, "give up after so many instructions")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--max-moves", o.max_moves, "give up after so many moves")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--max-memory", o.max_memory_mib, "give up at so much memory")->type_name("MIB")->check(CLI::Range(std::uint64_t{1}, kMaxMib))->capture_default_str();
+  app.add_option("--max-output", o.max_output_mib, "give up after so much output")->type_name("MIB")->check(CLI::Range(std::uint64_t{0}, kMaxMib))->capture_default_str();
   app.add_option("--record", o.record, "write every servo sample to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--gather", o.gather, "write what the program gathers to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--plot", o.plots, "draw path and motion to a .svg, .png or .html file")->type_name("FILE")->allow_extra_args(false);
-  app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo"}));
+  app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo", "frames"}));
+  app.add_flag("--trace{-}", o.trace, "print every executed line with its time and what it assigned; =FILE writes it to a file");
+  app.add_flag("--trace-instructions", o.trace_instructions, "the trace shows every instruction besides");
+  app.add_option("--trace-limit", o.trace_limit, "the trace ends after so many records; the run goes on")->type_name("N")->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}))->capture_default_str();
   app.add_flag("--stats", o.stats, "print times, speeds and accelerations at the end");
   app.add_flag("--check-limits", o.check_limits, "hold every servo sample to the motors' limits; exit 3 where one is exceeded");
   app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
@@ -63,10 +104,13 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
   app.add_flag("--limit-jerk", o.limit_jerk, "buffered lookahead keeps Motor[].InvJmax as well");
   add_kinematics_options(app, o);
+  add_card_options(app, o.cards);
+  add_drive_options(app, o);
   app.add_flag("--console", o.console, "read on-line commands from standard input and answer each line");
   app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();
   app.add_flag("--realtime", o.realtime, "with --console: simulated time follows the clock on the wall");
   app.add_option("-I", o.include_dirs, "folder for #include")->type_name("DIR")->allow_extra_args(false);
+  app.add_option("--max-include-depth", o.max_include_depth, "give up at #include nested so deep")->type_name("N")->check(CLI::Range(1, 200))->capture_default_str();
   app.add_option("-D", defines, "define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
   app.add_flag("-q,--quiet", o.quiet, "no progress, no answers of commands");
   try {
@@ -78,10 +122,13 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
     std::fprintf(stderr, "pmac-run: %s\nRun with --help for more information.\n", message.c_str());
     return kExitUsage;
   };
-  const bool lists_robots = o.robots.size() == 1 && o.robots[0] == "list";
-  if (o.files.empty() && !o.console && !lists_robots) return usage("FILE is required");
+  const bool lists = (o.robots.size() == 1 && o.robots[0] == "list") || o.drive == "list";
+  if (o.files.empty() && !o.console && !lists) return usage("FILE is required");
   if (o.kin_check.enabled && o.console) return usage("--kin-check runs nothing, and no --console");
+  if (o.trace_instructions && o.trace.empty()) return usage("--trace-instructions goes with --trace");
+  if (o.trace == "-" && (!o.emit.empty() || !json.empty())) return usage("--trace shares standard output with --json or --emit; name a file: --trace=FILE");
   if (o.realtime && !o.console) return usage("--realtime goes with --console");
+  if (const std::string bad = drive_misuse(o); !bad.empty()) return usage(bad);
   if (at.size() % 2 != 0) return usage("--at needs a time and a command");
   for (std::size_t i = 0; i + 1 < at.size(); i += 2) {
     if (const std::string bad = check_seconds(at[i]); !bad.empty()) return usage("--at: " + bad);

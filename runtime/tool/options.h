@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/motion/types.h"
+#include "runtime/tool/acr_options.h"
 
 namespace pmac::tool {
 
@@ -25,13 +26,20 @@ struct KinCheckOptions {
 struct RunOptions {
   std::vector<std::string> files;
   std::vector<std::string> include_dirs;
+  int max_include_depth = 64;
   std::vector<std::pair<std::string, std::string>> defines;
   std::vector<std::string> commands;                          // -e, in order, at time 0
   std::vector<std::pair<double, std::string>> timed_commands; // --at seconds, text
   std::optional<double> until_s;                              // absent: until idle
   double max_time_s = 3600;
   std::uint64_t max_instructions = 20'000'000'000;
+  std::uint64_t max_moves = 1'000'000'000;
+  std::uint64_t max_memory_mib = 8192;
+  std::uint64_t max_output_mib = 262'144;                     // of all files and stage records together
   std::string record, gather;
+  std::string trace;                                          // a file, or - for standard output
+  bool trace_instructions = false;
+  std::uint64_t trace_limit = 1'000'000;                      // records
   std::vector<std::string> plots;
   std::string emit;
   bool stats = false, check_limits = false, quiet = false;
@@ -43,6 +51,10 @@ struct RunOptions {
   bool limit_jerk = false;
   std::vector<std::string> robots;                            // --kinematics, "1=scara:upper_arm_mm=350"
   KinCheckOptions kin_check;
+  std::string drive;                                          // --drive NAME, and NAME=VALUE after the colon
+  std::vector<std::pair<std::string, std::string>> drive_settings;
+  std::string drive_record;                                   // table of what the simulated drive did
+  CardRunOptions cards;                                       // of ACR1000 runs
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,

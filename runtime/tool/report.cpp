@@ -49,6 +49,18 @@ ordered_json refusal_json(const std::string& command, const std::string& reason,
   return j;
 }
 
+/// The object "drive": figures by name, and what happened.
+ordered_json drive_json(const DriveRun& drive) {
+  if (!drive.execution()) return {{"refused", drive.refusal()}};
+  const drives::Execution& execution = *drive.execution();
+  ordered_json j{{"time_s", execution.time_s}, {"axes", execution.axes}};
+  for (const drives::Figure& figure : execution.figures) j[figure.name] = figure.value;
+  j["events"] = ordered_json::array();
+  for (const drives::DriveEvent& event : execution.events)
+    j["events"].push_back({{"time_s", event.time_s}, {"error", event.is_error}, {"text", event.text}});
+  return j;
+}
+
 }  // namespace
 
 bool Report::add_refusal(const std::string& command, const std::string& reason) {
@@ -109,6 +121,7 @@ std::string Report::json(const runtime::Machine& machine, const runtime::RunOutc
   j["motors"] = ordered_json::object();
   for (const auto& row : statistics.rows())
     j["motors"][std::to_string(row.motor)] = {{"final", row.final_mu}, {"max_speed", row.max_speed_mu_ms}, {"max_accel", row.max_accel_mu_ms2}};
+  if (drive_ != nullptr && drive_->active()) j["drive"] = drive_json(*drive_);
   if (!limits_.empty()) j["limits"] = limit_json(machine, limits_);
   if (detail == JsonDetail::kMoves) {
     j["outputs"] = ordered_json::array();

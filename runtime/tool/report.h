@@ -8,6 +8,7 @@
 #include "runtime/machine.h"
 #include "runtime/servo/limit_check.h"
 #include "runtime/servo/servo.h"
+#include "runtime/tool/drive_run.h"
 #include "runtime/tool/options.h"
 
 namespace pmac::tool {
@@ -24,6 +25,8 @@ class Report {
   void add(const runtime::JerkJoin& join);
   /// Of --check-limits, when the run is over.
   void add_limits(std::vector<runtime::LimitCheck::Row> rows) { limits_ = std::move(rows); }
+  /// Of --drive, when the run is over. Kept by reference.
+  void add_drive(const DriveRun& drive) { drive_ = &drive; }
   /// True for the first one of its kind; the others are counted. Beyond kMostRefusals kinds they are counted together.
   bool add_refusal(const std::string& command, const std::string& reason);
 
@@ -58,6 +61,7 @@ class Report {
   std::map<std::pair<std::string, std::string>, std::size_t> refusal_index_;   // by command and reason, into refusals_
   std::size_t more_refusals_ = 0;                                              // beyond kMostRefusals
   std::vector<runtime::LimitCheck::Row> limits_;
+  const DriveRun* drive_ = nullptr;
 };
 
 /// "idle", "until", "fault", "time-limit" or "budget".

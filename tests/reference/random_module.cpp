@@ -1,4 +1,5 @@
 #include "tests/reference/random_module.h"
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
@@ -27,6 +28,7 @@ class Maker {
   SyncTarget sync();
   AxisDefinition axis();
   PointerDefinition pointer();
+  MoveRun move_run();
   Symbol symbol();
   void fill_tables();
   Program program(ProgramKind kind, std::uint32_t number);
@@ -106,6 +108,22 @@ PointerDefinition Maker::pointer() {
 
 Symbol Maker::symbol() { return {any(SymbolKind::kCount), word(), below(9000), below(9), word()}; }
 
+MoveRun Maker::move_run() {
+  MoveRun run;
+  run.file = 0;
+  run.first_word.push_back(0);
+  for (unsigned rows = 1 + below(4); rows > 0; --rows) {
+    for (unsigned words = 1 + below(3); words > 0; --words) {
+      run.words.push_back(move_word_code(any(WordKind::kCount), 0));
+      run.values.push_back(number());
+    }
+    run.first_word.push_back(static_cast<std::uint32_t>(run.words.size()));
+    run.line.push_back(below(99));
+    run.column.push_back(static_cast<std::uint8_t>(below(256)));
+  }
+  return run;
+}
+
 void Maker::fill_tables() {
   for (unsigned i = 1 + below(3); i > 0; --i) module_.files.push_back(word());
   module_.constants.push_back(static_cast<double>(random_()) * (kLetterMaskEnd / 4294967296.0));
@@ -118,6 +136,7 @@ void Maker::fill_tables() {
   for (unsigned i = 1 + below(3); i > 0; --i) module_.axis_definitions.push_back(axis());
   for (unsigned i = 1 + below(3); i > 0; --i) module_.pointer_definitions.push_back(pointer());
   for (unsigned i = below(5); i > 0; --i) module_.symbols.push_back(symbol());
+  for (unsigned i = 1 + below(3); i > 0; --i) module_.move_runs.push_back(move_run());
 }
 
 Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::uint32_t size) {
@@ -163,6 +182,10 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
       const ControlVerb verb = any(ControlVerb::kCount);
       return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(3), static_cast<unsigned>(control_argument_count(verb)));
     }
+    case OperandFormat::kCard: {
+      const CardVerb verb = any(CardVerb::kCount);
+      return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(5), static_cast<unsigned>(card_verb_info(verb).argument_count));
+    }
     case OperandFormat::kString:
     case OperandFormat::kPortString:
     case OperandFormat::kRegString: return Instruction::with_imm(op, reg(), imm_below(module_.strings.size()));
@@ -173,6 +196,7 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kWord: return Instruction::with_imm(op, below(4), 0);
     case OperandFormat::kCodeOf: return Instruction::with_bc(op, reg(), static_cast<unsigned>(letter_number(std::string(1, "DFGHMST"[below(7)]))), below(4));
     case OperandFormat::kLetters: return Instruction::with_imm(op, 0, 0);  // constant 0 is a mask
+    case OperandFormat::kRegRun: return Instruction::with_imm(op, reg(), imm_below(module_.move_runs.size()));
     case OperandFormat::kProgram: return Instruction::with_imm(op, 0, 0);  // program 0 is a buffer
   }
   return {};
@@ -213,7 +237,7 @@ void damage(bytecode::Module& module, std::mt19937& random) {
   Program& program = module.programs[random() % module.programs.size()];
   Instruction& instruction = program.code[random() % program.code.size()];
   const auto wild = static_cast<std::uint32_t>(random() % 2 ? random() : random() % 64);
-  switch (random() % 12) {
+  switch (random() % 14) {
     case 0: instruction.op = static_cast<Opcode>(wild); break;
     case 1: instruction.a = static_cast<std::uint16_t>(wild); break;
     case 2: instruction.imm = static_cast<std::int32_t>(wild); break;
@@ -225,6 +249,8 @@ void damage(bytecode::Module& module, std::mt19937& random) {
     case 8: program.code.resize(1 + wild % program.code.size()); break;
     case 9: module.element_refs[wild % module.element_refs.size()].index[random() % 3].value = static_cast<std::uint32_t>(random()); break;
     case 10: module.sync_targets[wild % module.sync_targets.size()].number = static_cast<std::int32_t>(random()); break;
+    case 11: module.move_runs[wild % module.move_runs.size()].words[0] = static_cast<std::uint8_t>(random()); break;
+    case 12: module.move_runs[wild % module.move_runs.size()].first_word.back() = wild; break;
     default: module.constants.resize(wild % (module.constants.size() + 1)); break;
   }
 }

@@ -99,7 +99,7 @@ TEST_CASE("kin-check: what it cannot check is a usage error that says what is mi
       {"crank.pmc --kin-check --kin-range X=2:1", "LOW must be below HIGH"},
       {"crank.pmc --kin-check --kin-range X=1", "AXIS=LOW:HIGH"},
       {"crank.pmc --kin-check --kin-range X=a:2", "'a' is not a number"},
-      {"crank.pmc --kin-check --kin-range ??=1:2", "there is no such axis"},
+      {"crank.pmc --kin-check --kin-range ?\?=1:2", "there is no such axis"},
       {"crank.pmc --kin-check --kin-samples 0", "--kin-samples"},
   };
   for (const Row& row : rows) {

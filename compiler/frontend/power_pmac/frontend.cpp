@@ -13,10 +13,19 @@ struct Frontend::State {
 
   ExpandedText expand(const std::string& name, std::string text) { return preprocessor.run(sources.add_file(name, std::move(text))); }
 
+  /// The text as it is, or with its plain moves written out where it declares names that these lines could use.
+  ExpandedText with_safe_moves(ExpandedText expanded) const {
+    if (!expanded.has_plain_moves()) return expanded;
+    DeclaredNames later = names;
+    lex(expanded, later);
+    return later.may_change_moves ? expanded.with_moves_written_out(sources) : std::move(expanded);
+  }
+
   source::SourceManager& sources;
   source::Diagnostics& diagnostics;
   Preprocessor preprocessor;
   DeclaredNames names;
+  bool reads_plain_moves = true;
 };
 
 Frontend::Frontend(source::SourceManager& sources, source::Diagnostics& diagnostics, const std::vector<std::string>& include_dirs)
@@ -24,7 +33,7 @@ Frontend::Frontend(source::SourceManager& sources, source::Diagnostics& diagnost
 Frontend::~Frontend() = default;
 
 void Frontend::define(const std::string& name, const std::string& text) { state_->preprocessor.define(name, text); }
-void Frontend::know_name(const std::string& name) { state_->names.global.insert(name); }
+void Frontend::know_name(const std::string& name) { state_->names.add_global(name); }
 
 void Frontend::know_program(const std::string& name) { state_->names.programs.insert(name); }
 
@@ -34,9 +43,16 @@ void Frontend::record_lines() { state_->preprocessor.record_lines(); }
 const std::vector<SourceLine>& Frontend::recorded_lines() const { return state_->preprocessor.recorded(); }
 const std::vector<MacroDefinition>& Frontend::macro_definitions() const { return state_->preprocessor.definitions(); }
 
+void Frontend::set_max_include_depth(int depth) { state_->preprocessor.set_max_include_depth(depth); }
+
+void Frontend::read_plain_moves(bool on) { state_->reads_plain_moves = on; }
+
 ir::Unit Frontend::read(const std::string& name, std::string text) {
   state_->names.local.clear();
-  const auto tree = parse(state_->expand(name, std::move(text)), state_->names, state_->diagnostics);
+  state_->preprocessor.read_plain_moves(state_->reads_plain_moves && !state_->names.may_change_moves);
+  ExpandedText expanded = state_->expand(name, std::move(text));
+  state_->preprocessor.read_plain_moves(false);
+  const auto tree = parse(state_->with_safe_moves(std::move(expanded)), state_->names, state_->diagnostics);
   return Lowering(*tree, state_->diagnostics).lower_file(tree->root);
 }
 

@@ -52,6 +52,13 @@ void Lowering::lower_motion_line(P::MotionLineContext* line, ir::Body& out) {
   if (line->move()) lower_move(line->move(), out);
 }
 
+/// Lines that the fast path has read (plain_moves.h).
+void Lowering::lower_plain_moves(P::StatementContext* statement, ir::Body& out) {
+  const ir::MoveRows* rows = tree_.expanded.plain_moves_at(statement->start->getStartIndex());
+  if (rows) return out.push_back(ir::make_stmt(span_of(statement), *rows));
+  diagnostics_.error("PM2001", span_of(statement), "this control character cannot stand in a program");
+}
+
 /// spline a spline b spline c: one mode with three times; what is not given repeats the last one.
 void Lowering::lower_spline_times(const std::vector<P::MotionWordContext*>& words, std::size_t& at, ir::Body& out) {
   const source::Span span = span_of(words[at]);

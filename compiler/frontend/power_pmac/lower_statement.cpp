@@ -86,6 +86,7 @@ void Lowering::lower_statement(P::StatementContext* statement, ir::Body& out) {
   if (auto* label = statement->label()) return lower_label(label, out);
   if (auto* declaration = statement->declaration()) return lower_declaration(declaration, out);
   if (auto* line = statement->motionLine()) return lower_motion_line(line, out);
+  if (statement->PLAIN_MOVES()) return lower_plain_moves(statement, out);
   if (auto* code = statement->codeLine()) return lower_code_line(code, out);
   if (auto* assignment = statement->assignment()) return lower_assignment(assignment, out);
   if (auto* call = statement->callStatement()) {

@@ -55,6 +55,7 @@ class Lowering {
 
   // motion (lower_motion.cpp)
   void lower_motion_line(P::MotionLineContext* line, ir::Body& out);
+  void lower_plain_moves(P::StatementContext* statement, ir::Body& out);
   void lower_motion_word(P::MotionWordContext* word, ir::Body& out);
   void lower_spline_times(const std::vector<P::MotionWordContext*>& words, std::size_t& at, ir::Body& out);
   void lower_normal(P::MotionWordContext* word, ir::Body& out);

@@ -1,5 +1,7 @@
 #include "compiler/frontend/power_pmac/macros.h"
 
+#include "compiler/frontend/power_pmac/plain_moves.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,6 +48,7 @@ void MacroTable::define(Macro macro) {
     warning.notes.push_back({known->second.name_span, "the definition before is here"});
   }
   std::string name = macro.name;
+  move_like_names_ = move_like_names_ || reads_as_move_word(name);
   macros_.insert_or_assign(std::move(name), std::move(macro));
 }
 

@@ -55,6 +55,8 @@ class MacroTable {
   void undefine(std::string_view name);
   /// Also the built-in ones, __LINE__ and __FILE__.
   bool is_defined(std::string_view name) const;
+  /// A macro has a name that plain move lines could use: X10.
+  bool may_change_moves() const { return move_like_names_; }
 
   /// Expands the tokens of a line, or of several where the arguments of a call go on.
   PreprocessorTokens expand(const PreprocessorTokens& line);
@@ -89,6 +91,7 @@ class MacroTable {
   std::map<std::string, Macro, std::less<>> macros_;
   std::vector<List> lists_;
   std::deque<std::string> texts_;   // of tokens that # and ## made
+  bool move_like_names_ = false;    // some macro was defined with such a name
   int argument_depth_ = 0;          // calls inside the arguments of calls, at the moment
   std::size_t produced_ = 0;        // tokens made for the current line: stops explosive macros
 };

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <utility>
 
+#include "compiler/frontend/power_pmac/plain_moves.h"
 #include "compiler/frontend/power_pmac/turbo_text.h"
 
 namespace pmac::compiler::power_pmac {
@@ -65,6 +66,38 @@ void ExpandedText::append(std::string_view text, const source::Span& span, bool 
   text_ += text;
 }
 
+void ExpandedText::append_plain_moves(ir::MoveRows moves, const source::Span& span) {
+  moves_.emplace(text_.size(), std::move(moves));
+  append(std::string{kPlainMovesMark, '\n'}, span, false);
+}
+
+const ir::MoveRows* ExpandedText::plain_moves_at(std::size_t offset) const {
+  const auto found = moves_.find(offset);
+  return found == moves_.end() ? nullptr : &found->second;
+}
+
+ExpandedText ExpandedText::with_moves_written_out(const source::SourceManager& sources) const {
+  ExpandedText result;
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const Segment& segment = segments_[i];
+    const std::size_t end = i + 1 < segments_.size() ? segments_[i + 1].begin : text_.size();
+    if (!moves_.contains(segment.begin)) {
+      result.append(std::string_view(text_).substr(segment.begin, end - segment.begin), segment.span, segment.exact);
+      continue;
+    }
+    const std::string_view file = sources.file(segment.span.file).text;
+    for (std::size_t at = segment.span.begin; at < segment.span.end;) {
+      const std::size_t line_end = file.find('\n', at);
+      const std::size_t code_end = std::min(file.find("//", at), line_end);
+      const auto place = [&](std::size_t begin, std::size_t last) { return source::Span{segment.span.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(last), -1}; };
+      result.append(file.substr(at, code_end - at), place(at, code_end), true);
+      result.append("\n", place(line_end, line_end + 1), true);
+      at = line_end + 1;
+    }
+  }
+  return result;
+}
+
 source::Span ExpandedText::span_at(std::size_t offset) const {
   const auto after = std::upper_bound(segments_.begin(), segments_.end(), offset, [](std::size_t o, const Segment& s) { return o < s.begin; });
   if (after == segments_.begin()) return {};
@@ -102,6 +135,7 @@ ExpandedText Preprocessor::run(std::int32_t file) {
   out_ = &out;
   include_count_ = 0;
   includes_stopped_ = false;
+  in_program_ = false;
   run_file(file);
   out_ = nullptr;
   return out;
@@ -121,9 +155,12 @@ void Preprocessor::run_file(std::int32_t file) {
   const bool turbo_before = std::exchange(turbo_file_, is_turbo_text(text));
   record(SourceLine::Kind::kFileBegins, {}, file);
   while (cursor < text.size()) {
+    const std::size_t line_begin = cursor;
     Tokens line = next_line(file, cursor);
+    follow_program(line);
     if (!take_directive(line) && is_active()) emit_line(std::move(line), file, cursor);
     else out_->append("\n", {file, static_cast<std::uint32_t>(cursor - 1), static_cast<std::uint32_t>(cursor), -1}, true);
+    if (in_program_ && line_begin >= moves_tried_) take_plain_moves(file, cursor);
     if (out_->text().size() <= kMaxExpandedBytes) continue;
     diagnostics_.error("PM1012", {file, static_cast<std::uint32_t>(cursor - 1), static_cast<std::uint32_t>(cursor), -1}, fmt::format("this file expands to more than {} MiB of text", kMaxExpandedBytes >> 20));
     break;
@@ -134,6 +171,38 @@ void Preprocessor::run_file(std::int32_t file) {
     conditionals_.pop_back();
   }
   turbo_file_ = turbo_before;
+}
+
+/// Moves stand in prog and subprog buffers; elsewhere the grammar says what is wrong with them.
+void Preprocessor::follow_program(const Tokens& line) {
+  if (!is_active()) return;
+  const auto is_word = [](const PreprocessorToken& token, std::string_view word) {
+    return token.kind == Kind::kIdentifier && token.text.size() == word.size() &&
+           std::equal(word.begin(), word.end(), token.text.begin(), [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+  };
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (is_word(line[i], "close")) in_program_ = false;
+    const std::size_t next = is_word(line[i], "open") ? skip_blanks(line, i + 1) : line.size();
+    if (next < line.size()) in_program_ = is_word(line[next], "prog") || is_word(line[next], "subprog");
+  }
+}
+
+/// The fast path: the plain move lines from the cursor on, when they are many. The line in front of them went through the grammar, so
+/// that a statement which is open there ends with it, and not with them.
+void Preprocessor::take_plain_moves(std::int32_t file, std::size_t& cursor) {
+  const std::string_view text = sources_.file(file).text;
+  const bool allowed = moves_wanted_ && is_active() && !recording_ && !macros_.may_change_moves();
+  std::size_t line_end = 0;
+  const std::size_t last_line = text.rfind('\n', cursor - 2);
+  const std::size_t before = last_line == std::string_view::npos || cursor < 2 ? 0 : last_line + 1;
+  if (!allowed || !is_plain_move(text, before, line_end) || line_end != cursor) return;
+  const PlainMoveLines lines = count_plain_moves(text, cursor, kMinPlainMoves);
+  moves_tried_ = lines.end;
+  if (lines.count < kMinPlainMoves) return;
+  std::size_t end = cursor;
+  ir::MoveRows moves = power_pmac::read_plain_moves(text, cursor, file, sources_.line_column(file, static_cast<std::uint32_t>(cursor)).line, end);
+  out_->append_plain_moves(std::move(moves), {file, static_cast<std::uint32_t>(cursor), static_cast<std::uint32_t>(end), -1});
+  cursor = moves_tried_ = end;
 }
 
 bool Preprocessor::begins_turbo_comment(std::string_view text, std::size_t at) const {

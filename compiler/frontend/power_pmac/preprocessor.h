@@ -3,6 +3,7 @@
 // the place it came from. Only '#' followed by the name of a directive begins a directive: #1j+ and #*k are motor commands.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "compiler/frontend/power_pmac/macro_definition.h"
 #include "compiler/frontend/power_pmac/macros.h"
 #include "compiler/frontend/power_pmac/source_line.h"
+#include "compiler/ir/ir.h"
 #include "compiler/source/source.h"
 
 namespace pmac::compiler::power_pmac {
@@ -19,7 +21,14 @@ class ExpandedText {
  public:
   /// Appends text. exact: its bytes are the bytes from span.begin on; otherwise every byte belongs to the whole span.
   void append(std::string_view text, const source::Span& span, bool exact);
+  /// Appends the mark of plain move lines, and a line end; span is that of the lines.
+  void append_plain_moves(ir::MoveRows moves, const source::Span& span);
   const std::string& text() const { return text_; }
+  bool has_plain_moves() const { return !moves_.empty(); }
+  /// The moves whose mark stands at the offset, or null.
+  const ir::MoveRows* plain_moves_at(std::size_t offset) const;
+  /// The same text with the lines in place of the marks, as without the fast path.
+  ExpandedText with_moves_written_out(const source::SourceManager& sources) const;
   /// Place of bytes [begin, end) of the text.
   source::Span span_of(std::size_t begin, std::size_t end) const;
 
@@ -28,6 +37,7 @@ class ExpandedText {
   source::Span span_at(std::size_t offset) const;
   std::string text_;
   std::vector<Segment> segments_;
+  std::map<std::size_t, ir::MoveRows> moves_;  // by the offset of their mark
 };
 
 class Preprocessor {
@@ -36,6 +46,9 @@ class Preprocessor {
 
   /// Expands a file that the source manager knows. Macros stay known for the next file.
   ExpandedText run(std::int32_t file);
+  void set_max_include_depth(int depth) { max_include_depth_ = depth; }
+  /// From now on long runs of plain move lines are read here (plain_moves.h), unless lines are recorded.
+  void read_plain_moves(bool on) { moves_wanted_ = on; }
   /// As -D name=text.
   void define(const std::string& name, const std::string& text);
   /// Every #define of the files so far.
@@ -49,6 +62,8 @@ class Preprocessor {
   struct Conditional { bool active; bool taken; bool parent_active; bool seen_else; source::Span span; };
 
   void run_file(std::int32_t file);
+  void follow_program(const Tokens& line);
+  void take_plain_moves(std::int32_t file, std::size_t& cursor);
   Tokens next_line(std::int32_t file, std::size_t& cursor);
   bool begins_turbo_comment(std::string_view text, std::size_t at) const;
   void report_turbo_comment(std::int32_t file, std::size_t at);
@@ -78,9 +93,13 @@ class Preprocessor {
   std::vector<Conditional> conditionals_;
   std::vector<SourceLine> recorded_;
   bool recording_ = false;
+  bool moves_wanted_ = false;      // the fast path is on
+  bool in_program_ = false;        // inside open prog or open subprog ... close, by what begins the lines
+  std::size_t moves_tried_ = 0;    // plain lines up to here are too few
   ExpandedText* out_ = nullptr;
   bool turbo_file_ = false;   // the file at hand has the comments of Turbo PMAC
   int include_depth_ = 0;
+  int max_include_depth_ = 64;
   std::size_t include_count_ = 0;
   bool includes_stopped_ = false;  // a limit was reached and reported
 };

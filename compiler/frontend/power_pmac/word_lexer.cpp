@@ -1,4 +1,5 @@
 #include "compiler/frontend/power_pmac/frontend.h"
+#include "compiler/frontend/power_pmac/plain_moves.h"
 #include "compiler/frontend/power_pmac/word_lexer.h"
 
 #include <algorithm>
@@ -261,10 +262,20 @@ WordLexer::Word WordLexer::split_program_name(std::string_view word, std::size_t
   return {0, 0};
 }
 
+void DeclaredNames::add_global(std::string_view name) {
+  global.emplace(name);
+  may_change_moves = may_change_moves || reads_as_move_word(name);
+}
+
+void DeclaredNames::add_local(std::string_view name) {
+  local.emplace(name);
+  may_change_moves = may_change_moves || reads_as_move_word(name);
+}
+
 void WordLexer::declare(std::string_view name) {
   if (!expect_name_) return;
-  if (declaring_ == Declaring::kGlobal) names_.global.emplace(name);
-  else names_.local.emplace(name);
+  if (declaring_ == Declaring::kGlobal) names_.add_global(name);
+  else names_.add_local(name);
   if (declaring_ != Declaring::kParameters) expect_name_ = false;
 }
 

@@ -17,7 +17,7 @@ bool is_one_of(const ir::Stmt& statement) { return (std::holds_alternative<Nodes
 
 /// Something that starts a motion, or leads to statements that may.
 bool may_move(const ir::Stmt& statement) {
-  return is_one_of<ir::Move, ir::Dwell, ir::Delay, ir::Call, ir::Jump, ir::CodeLine, ir::LineCondition, ir::Cycle, ir::Control, ir::Label>(statement);
+  return is_one_of<ir::Move, ir::MoveRows, ir::Dwell, ir::Delay, ir::Call, ir::Jump, ir::CodeLine, ir::LineCondition, ir::Cycle, ir::Control, ir::Label>(statement);
 }
 
 bool is_synchronous(const ir::Stmt& statement) {
@@ -56,7 +56,7 @@ void lint_last_assignments(const ir::Buffer& buffer, source::Diagnostics& diagno
 void lint_early_output(const ir::Body& body, source::Diagnostics& diagnostics) {
   bool moving = false;
   for (const ir::StmtPtr& statement : body) {
-    if (std::holds_alternative<ir::Move>(statement->node)) moving = true;
+    if (is_one_of<ir::Move, ir::MoveRows>(*statement)) moving = true;
     if (std::holds_alternative<ir::Dwell>(statement->node)) moving = false;
     const auto* assign = std::get_if<ir::Assign>(&statement->node);
     const auto* target = assign ? std::get_if<ir::Variable>(&assign->target->node) : nullptr;
@@ -67,7 +67,7 @@ void lint_early_output(const ir::Body& body, source::Diagnostics& diagnostics) {
 
 void lint_first_move(const ir::Buffer& buffer, source::Diagnostics& diagnostics) {
   for (const ir::StmtPtr& statement : buffer.body) {
-    if (std::holds_alternative<ir::Move>(statement->node))
+    if (is_one_of<ir::Move, ir::MoveRows>(*statement))
       diagnostics.warning("PM7016", statement->span, "no move mode is set before this move; it is the one that the last program left");
     const bool decides = !is_one_of<ir::Assign, ir::SetParameter, ir::SetAbsInc, ir::SetFrax, ir::SetNormal, ir::Locals, ir::Globals, ir::Dwell, ir::Delay>(*statement);
     if (decides) return;

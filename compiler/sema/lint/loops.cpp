@@ -124,7 +124,7 @@ bool has_way_out(const Loop& loop) {
 
 bool may_take_time(const Loop& loop) {
   bool takes_time = false;
-  const auto look = [&](const ir::Stmt& statement) { takes_time = takes_time || is_one_of<ir::Move, ir::Dwell, ir::Delay, ir::Call, ir::Jump, ir::CodeLine, ir::Cycle, ir::Control, ir::Command>(statement); };
+  const auto look = [&](const ir::Stmt& statement) { takes_time = takes_time || is_one_of<ir::Move, ir::MoveRows, ir::Dwell, ir::Delay, ir::Call, ir::Jump, ir::CodeLine, ir::Cycle, ir::Control, ir::Command>(statement); };
   for (const ir::Stmt* statement : loop.body) {
     if (goto_label(*statement) && statement == loop.body.back() && !loop.labels.empty()) continue;
     ir::walk(*statement, {look, {}});

@@ -26,6 +26,7 @@ const std::vector<Rule>& rules() {
       {"kinematics/", {"kinematics/"}, {"Eigen/"}},
       {"runtime/tool/", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "nlohmann/", "CLI/", "Eigen/", "unistd.h", "poll.h"}},
       {"runtime/pmac_run.cpp", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "CLI/", "unistd.h"}},
+      {"runtime/pmac_silverlode.cpp", {"runtime/"}, {}},
       {"runtime/gather/", {"runtime/"}, {"fmt/", "nlohmann/", "unistd.h", "sys/", "fcntl.h"}},
       {"runtime/", {"runtime/", "kinematics/", "compiler/bytecode/"}, {"fmt/", "Eigen/"}},
   };
