@@ -185,14 +185,14 @@ int run(const RunOptions& options) {
   Recorder recorder(machine);
   Outputs outputs(options, machine, recorder);
   budget.add_output([&outputs] { return outputs.size(); });
-  machine.add_sink(&statistics);
+  if (options.json != JsonDetail::kNone || options.stats) machine.add_sink(&statistics);
   runtime::LimitCheck limit_check([&machine](int motor, double time_ms) { return machine.activity(motor, time_ms); });
   if (options.check_limits) machine.add_sink(&limit_check);
   excuse = &limit_check;
-  machine.add_sink(&recorder);
   if (const int code = drive.set_up(machine); code != kExitOk) return code;
-  if (drive.active()) machine.add_sink(&drive);
   emitter.attach(machine, recorder, drive);
+  if (recorder.has_sinks()) machine.add_sink(&recorder);
+  if (drive.active()) machine.add_sink(&drive);
 
   if (!options.trace.empty()) catch_signals();   // its file is open while files load
   if (const int code = set_robots(options, machine); code != kExitOk) return code;

@@ -34,6 +34,14 @@ void shorten_rows(std::vector<double>& rows, std::size_t count, std::size_t wide
     std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(u * wide), narrow, rows.begin() + static_cast<std::ptrdiff_t>(u * narrow));
 }
 
+/// Nobody looks at the samples up to the last two before time_ms: only where the motors are then, and how fast, counts.
+std::int64_t tick_before_seen(const Machine::State& s, double time_ms) {
+  const bool seen = !s.sinks.empty() || s.gather.enabled() || any_watched(s, s.block_motors);
+  auto last = static_cast<std::int64_t>(std::floor(time_ms / s.period_ms())) + 1;
+  while (s.tick_ms(last) > time_ms) --last;
+  return seen ? s.tick : std::max(s.tick, last - 2);
+}
+
 bool is_foreground(const Machine::State& s, int plc) { return plc <= s.elements.get(ElementId::kSysMaxRtPlc); }
 
 /// Simulated time until something of RunEnd.
@@ -110,11 +118,17 @@ void Machine::State::command_rows(double start_ms, int count) {
   const auto n = static_cast<std::size_t>(count);
   for (std::size_t u = 0; u < block_motors.size(); ++u) {
     const Motor& m = motors[static_cast<std::size_t>(block_motors[u])];
-    for (std::size_t k = 0; k < n; ++k) block_rows[u * n + k] = m.position_at(start_ms + static_cast<double>(k) * period_ms());
+    double* row = block_rows.data() + u * n;
+    if (m.source != Motor::Source::kProfile) std::fill_n(row, n, m.position_mu);   // of those on a path what comes below stays
+    else for (std::size_t k = 0; k < n; ++k) row[k] = m.position_at(start_ms + static_cast<double>(k) * period_ms());
   }
   for (const auto& c : coords) {
     if (!c->on_path()) continue;
     const std::vector<int>& path_motors = c->path_motors();
+    if (path_motors == block_motors) {
+      c->sample(start_ms, period_ms(), count, std::span<double>(block_rows.data(), path_motors.size() * n));
+      continue;
+    }
     c->sample(start_ms, period_ms(), count, std::span<double>(block_path.data(), path_motors.size() * n));
     for (std::size_t i = 0; i < path_motors.size(); ++i) {
       const auto at = static_cast<std::size_t>(std::find(block_motors.begin(), block_motors.end(), path_motors[i]) - block_motors.begin());
@@ -155,6 +169,7 @@ double Machine::State::sample_to(double time_ms) {
   block_path.resize(bytecode::kMaxMotors * kBlockTicks);
   if (plants) block_actual.resize(block_rows.size());
   std::vector<double>& actual = plants ? block_actual : block_rows;
+  tick = tick_before_seen(*this, time_ms);
   while (tick_ms(tick + 1) <= time_ms) {
     int count = 1;
     while (!single && count < kBlockTicks && tick_ms(tick + 1 + count) <= time_ms) ++count;

@@ -5,13 +5,13 @@
 namespace pmac::motion {
 namespace {
 
-struct Knot { std::vector<double> value, slope; };
+struct Knot { Row<double> value, slope; };
 
 /// W and V at `node` with times a, b before and c, d after it (a, d: of the segments one further away).
 Knot smoothed(const MotorNode& previous, const MotorNode& node, const MotorNode& next, double a, double b, double c, double d) {
   const double alpha = c * c / ((b + c) * (a + b + c)), gamma = b * b / ((b + c) * (b + c + d));
   const double in = 3 * c / ((b + c) * (a + b + c)), out = 3 * b / ((b + c) * (b + c + d));
-  Knot knot{node.position_mu, std::vector<double>(node.position_mu.size())};
+  Knot knot{node.position_mu, Row<double>(node.position_mu.size())};
   for (std::size_t m = 0; m < knot.value.size(); ++m) {
     const double back = node.position_mu[m] - previous.position_mu[m], ahead = next.position_mu[m] - node.position_mu[m];
     knot.value[m] += gamma * ahead - alpha * back;
@@ -35,7 +35,7 @@ class BsplineFit : public NodeFit {
   }
 
  private:
-  static Knot at_rest(const MotorNode& node) { return {node.position_mu, std::vector<double>(node.position_mu.size(), 0.0)}; }
+  static Knot at_rest(const MotorNode& node) { return {node.position_mu, Row<double>(node.position_mu.size(), 0.0)}; }
 
   /// The segment that ends at nodes_[1]; nodes_[0] is then forgotten. Times missing at the ends are those of the neighbours.
   void emit_inner(std::vector<Segment>& out) {

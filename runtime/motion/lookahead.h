@@ -14,10 +14,10 @@
 // reachability analysis" (2018).
 #pragma once
 
-#include <deque>
 #include <vector>
 
 #include "runtime/motion/rate_limits.h"
+#include "runtime/motion/ring.h"
 #include "runtime/motion/time_law.h"
 #include "runtime/motion/velocity_steps.h"
 
@@ -39,15 +39,20 @@ class Lookahead : public TimeLaw {
  private:
   struct Interval {
     Segment segment;
-    double accel_share;
+    double accel_share = 1;
     RateLimits limits;
     double speed_ratio2 = 1;    // x at the end of the interval before is this times x at its start
     double start_bound = 1;     // of x at its start: limits of both neighbours, 0 where motion has to stop
     double beta = 0;            // of x at its start
+    bool may_be_divided = false;
   };
   int known() const { return static_cast<int>(intervals_.size()); }
   void append(PreparedSegment prepared);
-  void append_part(PreparedSegment prepared);
+  void append_part(PreparedSegment prepared, RateLimits limits, bool may_be_divided);
+  void divide_interval(const Interval& whole, std::vector<Interval>& parts);
+  bool is_slowed(int i, double end_beta) const;
+  void plan(double end_beta);
+  void divide_first(double end_beta);
   void push(Interval interval);
   void rest(Segment segment, std::vector<TimedSegment>& out);
   void end_path(std::vector<TimedSegment>& out);
@@ -61,7 +66,8 @@ class Lookahead : public TimeLaw {
   VelocitySteps steps_;
   std::vector<PreparedSegment> prepared_;
   std::vector<double> part_ends_ms_;
-  std::deque<Interval> intervals_;
+  Ring<Interval> intervals_;
+  std::vector<Interval> taken_out_;
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass
   double rate2_ = 0;            // x at the start of the first interval

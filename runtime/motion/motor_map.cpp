@@ -11,9 +11,13 @@ MotorKinematics::MotorKinematics(const MotorMap& map)
     : count_(map.motors.size()), offset_mu_(map.offset_mu), inverse_(map.inverse), inverse_rates_(map.inverse_rates) {
   offset_mu_.resize(count_, 0.0);
   if (inverse_) return;
+  axes_ = 0;
   for (std::size_t motor = 0; motor < count_; ++motor)
     for (std::size_t axis = 0; axis < kAxisCount; ++axis)
-      if (const double c = map.matrix_mu_uu[motor * kAxisCount + axis]; c != 0) terms_.push_back({motor, axis, c});
+      if (const double c = map.matrix_mu_uu[motor * kAxisCount + axis]; c != 0) {
+        terms_.push_back({motor, axis, c});
+        axes_ |= 1u << axis;
+      }
 }
 
 std::optional<runtime::Fault> MotorKinematics::position(const AxisVector& axis_uu, double* motor_mu, SourceLine source) const {

@@ -15,6 +15,8 @@ class MotorKinematics {
 
   std::size_t count() const { return count_; }
   bool is_linear() const { return !inverse_; }
+  /// Mask of the axes that motor positions depend on.
+  std::uint32_t axes() const { return axes_; }
 
   /// motor_mu: [count()]. The routine's fault, or one for a result that is not finite; motor_mu is then of no use.
   std::optional<runtime::Fault> position(const AxisVector& axis_uu, double* motor_mu, SourceLine source) const;
@@ -28,6 +30,7 @@ class MotorKinematics {
  private:
   struct Term { std::size_t motor, axis; double coefficient; };
   std::size_t count_ = 0;
+  std::uint32_t axes_ = ~0u;
   std::vector<Term> terms_;          // non-zero coefficients, by motor
   std::vector<double> offset_mu_;
   std::function<std::optional<runtime::Fault>(const AxisVector&, double*, SourceLine)> inverse_;

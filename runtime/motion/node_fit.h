@@ -15,14 +15,14 @@ namespace pmac::motion {
 struct NodeSide {
   std::uint64_t stretch = 0;
   double z = 0, z_rate = 0;             // 1/ms
-  std::vector<double> velocity_mu_ms;   // linear maps only
+  Row<double> velocity_mu_ms;           // linear maps only
 };
 
 struct MotorNode {
   double time_ms = 0;                   // programmed time
   std::uint64_t command = 0;            // of the segment that ends here
   SourceLine source;
-  std::vector<double> position_mu;
+  Row<double> position_mu;
   NodeSide before, after;
   bool step = false;                    // the velocity steps here: the sides are not to be made equal
 };
@@ -44,7 +44,7 @@ std::unique_ptr<NodeFit> make_stencil_fit();
 std::unique_ptr<NodeFit> make_bspline_fit();
 
 /// Segment between two nodes with these end positions and velocities ([motor]).
-Segment hermite_segment(const MotorNode& from, const MotorNode& to, const std::vector<double>& p0, const std::vector<double>& v0,
-                        const std::vector<double>& p1, const std::vector<double>& v1);
+Segment hermite_segment(const MotorNode& from, const MotorNode& to, const Row<double>& p0, const Row<double>& v0,
+                        const Row<double>& p1, const Row<double>& v1);
 
 }  // namespace pmac::motion

@@ -21,7 +21,28 @@ void add_motion(const PathPart& part, double d, const CurvePoint& at, PathPoint&
   });
 }
 
+/// Adds the velocity of one part for the axes of the mask.
+void add_velocity(const PathPart& part, double d, const CurvePoint& at, std::uint32_t axes, PathMotion& motion) {
+  const double rate = parameter_rate(part, d);
+  for_each_axis(part.curve->moved & axes, [&](std::size_t axis) { motion.velocity[axis] += at.d1[axis] * rate; });
+}
+
 }  // namespace
+
+void evaluate(const PathPiece& piece, double time_ms, std::uint32_t axes, PathMotion& motion) {
+  CurvePoint at;  // read for moved axes only
+  evaluate(*piece.part[0].curve, parameter(piece.part[0], time_ms), at);
+  for_each_axis(axes, [&](std::size_t axis) {
+    motion.position[axis] = at.position[axis];
+    motion.velocity[axis] = 0;
+  });
+  add_velocity(piece.part[0], time_ms, at, axes, motion);
+  if (piece.part_count < 2) return;
+  const Curve& next = *piece.part[1].curve;
+  evaluate(next, parameter(piece.part[1], time_ms), at);
+  for_each_axis(next.moved & axes, [&](std::size_t axis) { motion.position[axis] += at.position[axis] - next.start[axis]; });
+  add_velocity(piece.part[1], time_ms, at, axes, motion);
+}
 
 PathPoint evaluate(const PathPiece& piece, double time_ms) {
   PathPoint point;

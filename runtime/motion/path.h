@@ -36,6 +36,10 @@ struct PathPoint { AxisVector position{}, velocity{}, acceleration{}; };
 /// At time_ms since the start of the piece, 0 .. duration_ms. Exact.
 PathPoint evaluate(const PathPiece& piece, double time_ms);
 
+/// Position and velocity alone, of the axes of the mask; what stands there of others stays.
+struct PathMotion { AxisVector position, velocity; };
+void evaluate(const PathPiece& piece, double time_ms, std::uint32_t axes, PathMotion& motion);
+
 /// u and its derivative with respect to time.
 double parameter(const PathPart& part, double time_ms);
 double parameter_rate(const PathPart& part, double time_ms);

@@ -4,7 +4,11 @@
 //   q'' x + q' (x1 - x0) / (2 h)          ' = d/ds, h = programmed duration
 //
 // a quadratic polynomial of s whose three Bernstein coefficients are linear in (x0, x1). A polynomial stays between its
-// Bernstein coefficients, so limits on these hold everywhere in the segment and not only at sampled places.
+// Bernstein coefficients, so limits on these hold everywhere in the segment and not only at sampled places. Each is a band:
+//
+//   x1 |      /     /          slope * x0 - width <= x1 <= slope * x0 + width
+//      |     /     /
+//      |____/_____/__ x0
 #pragma once
 
 #include <vector>
@@ -13,12 +17,12 @@
 
 namespace pmac::motion {
 
-/// |start * x0 + end * x1| <= 1.
-struct RateRow { double start, end; };
+struct RateBand { double slope, width; };
 
 struct RateLimits {
-  std::vector<RateRow> rows;
+  Row<RateBand> bands;            // those that can matter: x is never above 1
   double max_rate2 = 1;           // of x0 and x1: never ahead of the program, and the speed limits
+  double max_start_rate2 = 1;     // of x0 alone: bands that stand upright
 
   /// Largest x0 for which an x1 in [0, x1_max] exists; x0 <= x0_max.
   double largest_start(double x0_max, double x1_max) const;

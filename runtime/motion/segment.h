@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "runtime/motion/row.h"
 #include "runtime/motion/types.h"
 
 namespace pmac::motion {
@@ -26,7 +27,7 @@ struct Segment {
   SourceLine source;
   double start_ms = 0;              // programmed time since the start of the sequence
   double duration_ms = 0;
-  std::vector<MotorCubic> motor;    // [motor], order of the map
+  Row<MotorCubic> motor;            // [motor], order of the map
 };
 
 /// Part of a segment from `from` on, `duration` long.

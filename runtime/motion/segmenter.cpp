@@ -73,7 +73,8 @@ std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
   node.command = piece.command;
   node.source = piece.source;
   node.position_mu.resize(kinematics_.count());
-  const PathPoint point = evaluate(piece, 0);
+  PathMotion point;
+  evaluate(piece, 0, kinematics_.axes(), point);
   if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   ++stretch_;
   stretch_start_ms_ = piece.start_ms;
@@ -96,13 +97,17 @@ void Segmenter::enter_piece(const PathPiece& piece) {
   }
   const bool is_new_side = !previous_ || piece.step_at_start || !kinematics_.is_linear();
   const double local_ms = open_->time_ms - piece.start_ms;
-  if (is_new_side) fill_side(open_->after, piece, local_ms, evaluate(piece, local_ms));
+  if (is_new_side) {
+    PathMotion point;
+    evaluate(piece, local_ms, kinematics_.axes(), point);
+    fill_side(open_->after, piece, local_ms, point);
+  }
   if (!is_new_side) open_->after = open_->before;
   open_->step = open_->step || piece.step_at_start;
 }
 
 /// point: the path at local_ms.
-void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathPoint& point) const {
+void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point) const {
   side.stretch = stretch_;
   const bool corner = piece.part_count > 1;
   side.z = corner ? piece.start_ms + local_ms - stretch_start_ms_ : parameter(piece.part[0], local_ms);
@@ -144,7 +149,8 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, double local_ms
   node.command = piece.command;
   node.source = piece.source;
   node.position_mu.resize(kinematics_.count());
-  const PathPoint point = evaluate(piece, local_ms);
+  PathMotion point;
+  evaluate(piece, local_ms, kinematics_.axes(), point);
   if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
@@ -161,7 +167,8 @@ std::optional<Fault> Segmenter::close_gap(std::vector<Segment>& out) {
   const double end_ms = piece.start_ms + piece.duration_ms;
   const bool is_first = open_->before.stretch == 0;
   if (is_first || end_ms - open_->time_ms >= kMinGap_ms) return add_node(piece, piece.duration_ms, out);
-  const PathPoint point = evaluate(piece, piece.duration_ms);
+  PathMotion point;
+  evaluate(piece, piece.duration_ms, kinematics_.axes(), point);
   if (auto fault = kinematics_.position(point.position, open_->position_mu.data(), piece.source)) return fault;
   open_->time_ms = end_ms;
   fill_side(open_->before, piece, piece.duration_ms, point);

@@ -30,7 +30,7 @@ class StencilFit : public NodeFit {
   }
 
  private:
-  struct Estimate { std::vector<double> velocity; int nodes = 0; };
+  struct Estimate { Row<double> velocity; int nodes = 0; };
 
   void decide_next(std::vector<Segment>& out) {
     make_velocities(next_);
@@ -75,13 +75,13 @@ class StencilFit : public NodeFit {
       const bool go_left = can_left && (!can_right || at - first <= last - at);
       go_left ? --first : ++last;
     }
-    Estimate result{std::vector<double>(nodes_[at].position_mu.size(), 0.0), static_cast<int>(last - first) + 1};
+    Estimate result{Row<double>(nodes_[at].position_mu.size(), 0.0), static_cast<int>(last - first) + 1};
     if (side.z_rate != 0) differentiate(at, first, last, side, result.velocity);
     return result;
   }
 
   /// sum of D_k (q_k - q_at): derivative at node `at` of the Lagrange polynomial through nodes first..last, times dz/dt.
-  void differentiate(std::size_t at, std::size_t first, std::size_t last, const NodeSide& side, std::vector<double>& velocity) const {
+  void differentiate(std::size_t at, std::size_t first, std::size_t last, const NodeSide& side, Row<double>& velocity) const {
     const double here = z_in(at, side.stretch);
     for (std::size_t k = first; k <= last; ++k) {
       if (k == at) continue;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pmac::motion {
 namespace {
@@ -15,107 +16,125 @@ double end_of(const TimedSegment& segment) { return segment.start_ms + segment.d
 }  // namespace
 
 void Timeline::reset(std::vector<double> position_mu, double time_ms) {
-  segments_.clear();
-  programmed_ms_.clear();
+  known_.clear();
   cursor_ = 0;
   end_ms_ = sampled_ms_ = time_ms;
-  rest_mu_ = std::move(position_mu);
-  end_velocity_mu_ms_.clear();
+  set_rest(std::move(position_mu));
 }
 
 void Timeline::set_rest(std::vector<double> position_mu) {
   rest_mu_ = std::move(position_mu);
   end_velocity_mu_ms_.clear();
+  end_is_noted_ = true;
 }
 
 void Timeline::push(TimedSegment segment) {
   end_ms_ = end_of(segment);
-  const double rate = segment.rate + segment.rate_slope * segment.duration_ms, programmed_ms = segment.segment.duration_ms;
+  const double programmed_ms = segment.segment.duration_ms;
+  known_.push_back({std::move(segment), programmed_end_ms_});
+  programmed_end_ms_ += programmed_ms;
+  end_is_noted_ = false;
+}
+
+/// Where the last segment ends, and how fast.
+void Timeline::note_end() {
+  if (std::exchange(end_is_noted_, true)) return;
+  const TimedSegment& last = known_.back().timed;
+  const double rate = last.rate + last.rate_slope * last.duration_ms, programmed_ms = last.segment.duration_ms;
   end_velocity_mu_ms_.resize(rest_mu_.size());
   for (std::size_t m = 0; m < rest_mu_.size(); ++m) {
-    rest_mu_[m] = segment.segment.motor[m].position(programmed_ms);
-    end_velocity_mu_ms_[m] = rate * segment.segment.motor[m].velocity(programmed_ms);
+    rest_mu_[m] = last.segment.motor[m].position(programmed_ms);
+    end_velocity_mu_ms_[m] = rate * last.segment.motor[m].velocity(programmed_ms);
   }
-  programmed_ms_.push_back(programmed_end_ms_);
-  programmed_end_ms_ += segment.segment.duration_ms;
-  segments_.push_back(std::move(segment));
+}
+
+std::size_t Timeline::first_ending_after(double time_ms) const {
+  return known_.first_not([&](const Known& k) { return end_of(k.timed) <= time_ms; });
 }
 
 void Timeline::prune() {
   std::size_t kept = 0;
   if (history_ms_ > 0 && cursor_ > 0) {
-    const double reached_ms = cursor_ < programmed_ms_.size() ? programmed_ms_[cursor_] : programmed_end_ms_;
-    const auto first = std::upper_bound(programmed_ms_.begin(), programmed_ms_.begin() + static_cast<std::ptrdiff_t>(cursor_), reached_ms - history_ms_);
-    kept = cursor_ - static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first - programmed_ms_.begin() - 1));
+    const double oldest_ms = (cursor_ < known_.size() ? known_[cursor_].programmed_ms : programmed_end_ms_) - history_ms_;
+    const std::size_t first = std::min(cursor_, known_.first_not([&](const Known& k) { return k.programmed_ms <= oldest_ms; }));
+    kept = cursor_ - (first > 0 ? first - 1 : 0);
   }
-  const auto gone = static_cast<std::ptrdiff_t>(cursor_ - kept);
-  segments_.erase(segments_.begin(), segments_.begin() + gone);
-  programmed_ms_.erase(programmed_ms_.begin(), programmed_ms_.begin() + gone);
-  cursor_ = kept;
+  if (cursor_ - kept == known_.size()) note_end();
+  for (; cursor_ > kept; --cursor_) known_.pop_front();
 }
 
 double Timeline::history_start_ms(double time_ms, double amount_ms) const {
-  const auto at = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return end_of(s) <= time_ms; });
-  const double reached_ms = at == segments_.end() ? programmed_end_ms_ : programmed_ms_[static_cast<std::size_t>(at - segments_.begin())];
-  const auto first = std::lower_bound(programmed_ms_.begin(), programmed_ms_.end(), reached_ms - amount_ms);
-  return first == programmed_ms_.end() ? oldest_ms() : segments_[static_cast<std::size_t>(first - programmed_ms_.begin())].start_ms;
+  const std::size_t at = first_ending_after(time_ms);
+  const double reached_ms = at == known_.size() ? programmed_end_ms_ : known_[at].programmed_ms;
+  const std::size_t first = known_.first_not([&](const Known& k) { return k.programmed_ms < reached_ms - amount_ms; });
+  return first == known_.size() ? oldest_ms() : known_[first].timed.start_ms;
 }
 
 double Timeline::programmed_after(double time_ms) const {
-  const auto first = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return s.start_ms < time_ms; });
-  return first == segments_.end() ? 0 : programmed_end_ms_ - programmed_ms_[static_cast<std::size_t>(first - segments_.begin())];
+  const std::size_t first = known_.first_not([&](const Known& k) { return k.timed.start_ms < time_ms; });
+  return first == known_.size() ? 0 : programmed_end_ms_ - known_[first].programmed_ms;
 }
 
 double Timeline::programmed_until_ms(double amount_ms) const {
-  const auto beyond = std::upper_bound(programmed_ms_.begin(), programmed_ms_.end(), programmed_end_ms_ - amount_ms);
-  if (beyond == programmed_ms_.begin()) return -std::numeric_limits<double>::infinity();
-  return segments_[static_cast<std::size_t>(beyond - programmed_ms_.begin()) - 1].start_ms;
+  const std::size_t beyond = known_.first_not([&](const Known& k) { return k.programmed_ms <= programmed_end_ms_ - amount_ms; });
+  return beyond == 0 ? -std::numeric_limits<double>::infinity() : known_[beyond - 1].timed.start_ms;
 }
 
 SourceLine Timeline::source_at(double time_ms) const {
-  const auto next = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return end_of(s) <= time_ms; });
-  return next == segments_.end() || next->start_ms > time_ms ? SourceLine{} : next->segment.source;
+  const std::size_t next = first_ending_after(time_ms);
+  return next == known_.size() || known_[next].timed.start_ms > time_ms ? SourceLine{} : known_[next].timed.segment.source;
 }
 
 void Timeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
   int done = 0;
-  while (cursor_ > 0 && count > 0 && end_of(segments_[cursor_ - 1]) > start_ms) --cursor_;  // the path is retraced, or a run was cut short
+  while (cursor_ > 0 && count > 0 && end_of(known_[cursor_ - 1].timed) > start_ms) --cursor_;  // the path is retraced, or a run was cut short
   while (done < count) {
     const double time_ms = start_ms + done * period_ms;
-    while (cursor_ < segments_.size() && end_of(segments_[cursor_]) <= time_ms) ++cursor_;
-    if (cursor_ == segments_.size()) {
+    while (cursor_ < known_.size() && end_of(known_[cursor_].timed) <= time_ms) ++cursor_;
+    if (cursor_ == known_.size()) {
+      note_end();
       sample_rest(time_ms, done, count, position_mu, velocity_mu_ms);
       break;
     }
-    const TimedSegment& segment = segments_[cursor_];
-    int last = done + 1;
-    while (last < count && last - done < kBlock && start_ms + last * period_ms < end_of(segment)) ++last;
+    const TimedSegment& segment = known_[cursor_].timed;
+    const int last = samples_in(segment, start_ms, period_ms, done, count);
     sample_segment(segment, start_ms, period_ms, done, last, count, position_mu, velocity_mu_ms);
     done = last;
   }
   if (count > 0) sampled_ms_ = start_ms + (count - 1) * period_ms;
 }
 
+/// One behind the last sample, from `first` on, that lies before the end of the segment; at most kBlock of them.
+int Timeline::samples_in(const TimedSegment& segment, double start_ms, double period_ms, int first, int count) const {
+  const int most = std::min(count, first + kBlock);
+  const double end_ms = end_of(segment), guess = std::min((end_ms - start_ms) / period_ms, static_cast<double>(most));
+  int last = std::max(first + 1, static_cast<int>(guess));
+  while (last > first + 1 && start_ms + (last - 1) * period_ms >= end_ms) --last;
+  while (last < most && start_ms + last * period_ms < end_ms) ++last;
+  return last;
+}
+
 void Timeline::peek(double time_ms, std::span<double> position_mu) const {
-  const auto at = std::partition_point(segments_.begin(), segments_.end(), [&](const TimedSegment& s) { return end_of(s) <= time_ms; });
-  if (at == segments_.end()) {
+  std::size_t at = first_ending_after(time_ms);
+  if (at == known_.size() && end_is_noted_) {
     std::copy(rest_mu_.begin(), rest_mu_.end(), position_mu.begin());
     return;
   }
-  const double d = std::clamp(at->programmed_ms(time_ms - at->start_ms), 0.0, at->segment.duration_ms);
-  for (std::size_t m = 0; m < position_mu.size(); ++m) position_mu[m] = at->segment.motor[m].position(d);
+  const bool is_over = at == known_.size();
+  const TimedSegment& timed = known_[is_over ? at - 1 : at].timed;
+  const double d = is_over ? timed.segment.duration_ms : std::clamp(timed.programmed_ms(time_ms - timed.start_ms), 0.0, timed.segment.duration_ms);
+  for (std::size_t m = 0; m < position_mu.size(); ++m) position_mu[m] = timed.segment.motor[m].position(d);
 }
 
 /// Samples first..last-1, none after the end of the segment; before its start it stands at its first point.
 void Timeline::sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
                               std::span<double> position_mu, std::span<double> velocity_mu_ms) const {
-  std::array<double, kBlock> at{}, rate{};
+  std::array<double, kBlock> at;  // filled as far as it is read
   const int n = last - first;
+  const double segment_ms = segment.start_ms, end = segment.segment.duration_ms;
   for (int k = 0; k < n; ++k) {
-    const double t = start_ms + (first + k) * period_ms - segment.start_ms;
-    const std::size_t i = static_cast<std::size_t>(k);
-    at[i] = t <= 0 ? 0 : std::min(segment.programmed_ms(t), segment.segment.duration_ms);
-    rate[i] = t < 0 ? 0 : segment.rate + segment.rate_slope * t;
+    const double t = start_ms + (first + k) * period_ms - segment_ms, d = std::min(segment.programmed_ms(t), end);
+    at[static_cast<std::size_t>(k)] = t <= 0 ? 0 : d;
   }
   for (std::size_t m = 0; m < segment.segment.motor.size(); ++m) {
     const MotorCubic q = segment.segment.motor[m];
@@ -123,7 +142,10 @@ void Timeline::sample_segment(const TimedSegment& segment, double start_ms, doub
     for (int k = 0; k < n; ++k) position[k] = q.position(at[static_cast<std::size_t>(k)]);
     if (velocity_mu_ms.empty()) continue;
     double* velocity = velocity_mu_ms.data() + m * static_cast<std::size_t>(count) + first;
-    for (int k = 0; k < n; ++k) velocity[k] = q.velocity(at[static_cast<std::size_t>(k)]) * rate[static_cast<std::size_t>(k)];
+    for (int k = 0; k < n; ++k) {
+      const double t = start_ms + (first + k) * period_ms - segment_ms;
+      velocity[k] = q.velocity(at[static_cast<std::size_t>(k)]) * (t < 0 ? 0 : segment.rate + segment.rate_slope * t);
+    }
   }
 }
 

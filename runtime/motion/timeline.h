@@ -1,10 +1,10 @@
 // Hop 9: timed segments in a row, evaluated at ascending times.
 #pragma once
 
-#include <deque>
 #include <span>
 #include <vector>
 
+#include "runtime/motion/ring.h"
 #include "runtime/motion/segment.h"
 
 namespace pmac::motion {
@@ -24,12 +24,11 @@ class Timeline {
   void prune();
   /// The earliest time that sample() and peek() may be asked for, and the one from which amount_ms of programmed time lead to time_ms
   /// (the earliest where there is less).
-  double oldest_ms() const { return segments_.empty() ? end_ms_ : segments_.front().start_ms; }
+  double oldest_ms() const { return known_.empty() ? end_ms_ : known_.front().timed.start_ms; }
   double history_start_ms(double time_ms, double amount_ms) const;
 
   double end_ms() const { return end_ms_; }
   double sampled_ms() const { return sampled_ms_; }
-  const std::vector<double>& rest_mu() const { return rest_mu_; }
   /// Programmed time of the segments that begin at or after time_ms.
   double programmed_after(double time_ms) const;
   /// Until when programmed_after() stays at amount_ms or more; -inf if it does not.
@@ -43,12 +42,17 @@ class Timeline {
   void peek(double time_ms, std::span<double> position_mu) const;
 
  private:
+  int samples_in(const TimedSegment& segment, double start_ms, double period_ms, int first, int count) const;
   void sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
                       std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
   void sample_rest(double time_ms, int first, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
 
-  std::deque<TimedSegment> segments_;
-  std::deque<double> programmed_ms_;  // [segment] programmed time of all segments before it
+  struct Known { TimedSegment timed; double programmed_ms; };   // programmed_ms: of all segments before it
+  std::size_t first_ending_after(double time_ms) const;
+  void note_end();
+
+  Ring<Known> known_;
+  bool end_is_noted_ = true;        // rest_mu_ and end_velocity_mu_ms_ are those of the end of known_
   double programmed_end_ms_ = 0;
   double history_ms_ = 0;           // programmed time that prune() leaves
   std::size_t cursor_ = 0;          // first segment that ends after the last sample

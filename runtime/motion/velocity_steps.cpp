@@ -36,14 +36,29 @@ bool is_moving(const Segment& segment, bool at_end) {
   return speed_at(segment, at_end) > kRest * std::max(mean, speed_at(segment, !at_end));
 }
 
+VelocitySteps::Ends VelocitySteps::ends_of(const Segment& segment) {
+  const double h = segment.duration_ms;
+  double start2 = 0, end2 = 0, way = 0;
+  for (const MotorCubic& q : segment.motor) {
+    const double end = q.velocity(h);
+    start2 += q.c1 * q.c1;
+    end2 += end * end;
+    way = std::max(way, std::abs(q.position(h) - q.c0));
+  }
+  const double start = std::sqrt(start2), end = std::sqrt(end2), mean = way / h;
+  return {start, end, start > kRest * std::max(mean, end), end > kRest * std::max(mean, start)};
+}
+
 VelocitySteps::VelocitySteps(std::vector<MotorLimits> limits, double servo_period_ms)
     : limits_(std::move(limits)), period_ms_(servo_period_ms) {}
 
 void VelocitySteps::add(Segment segment, std::vector<PreparedSegment>& out) {
   PreparedSegment prepared;
   prepared.segment = std::move(segment);
-  if (!held_.empty()) compare(held_.back().segment, prepared);
-  if (held_.empty()) prepared.stops_at_start = is_moving(prepared.segment, false);
+  const Ends ends = ends_of(prepared.segment);
+  if (!held_.empty()) compare(held_.back().segment, last_ends_, prepared, ends);
+  if (held_.empty()) prepared.stops_at_start = ends.moves_at_start;
+  last_ends_ = ends;
   const double known_ms = end_of(prepared.segment);
   held_.push_back(std::move(prepared));
   decide_steps(known_ms);
@@ -60,22 +75,22 @@ void VelocitySteps::finish(std::vector<PreparedSegment>& out) {
 }
 
 /// Fills in how `after` begins, and notes a step in direction.
-void VelocitySteps::compare(const Segment& before, PreparedSegment& after) {
-  const bool moves_before = is_moving(before, true), moves_after = is_moving(after.segment, false);
+void VelocitySteps::compare(const Segment& before, const Ends& before_ends, PreparedSegment& after, const Ends& after_ends) {
+  const bool moves_before = before_ends.moves_at_end, moves_after = after_ends.moves_at_start;
   if (!moves_before && !moves_after) return;
   if (!moves_before || !moves_after) {
     after.stops_at_start = true;
     return;
   }
-  const double speed_before = speed_at(before, true), speed_after = speed_at(after.segment, false);
+  const double speed_before = before_ends.end_speed, speed_after = after_ends.start_speed;
   if (std::abs(speed_after - speed_before) > kSameVelocity * speed_after) after.speed_ratio = speed_after / speed_before;
-  Step step{after.segment.start_ms, {}};
+  const auto change = [&](std::size_t m) { return std::abs(after.segment.motor[m].c1 - after.speed_ratio * before.motor[m].velocity(before.duration_ms)); };
   double largest = 0;
-  for (std::size_t m = 0; m < before.motor.size(); ++m) {
-    step.change_mu_ms.push_back(std::abs(after.segment.motor[m].c1 - after.speed_ratio * before.motor[m].velocity(before.duration_ms)));
-    largest = std::max(largest, step.change_mu_ms.back());
-  }
-  if (largest > kSameVelocity * speed_after) steps_.push_back(std::move(step));
+  for (std::size_t m = 0; m < before.motor.size(); ++m) largest = std::max(largest, change(m));
+  if (largest <= kSameVelocity * speed_after) return;
+  Step step{after.segment.start_ms, {}};
+  for (std::size_t m = 0; m < before.motor.size(); ++m) step.change_mu_ms.push_back(change(m));
+  steps_.push_back(std::move(step));
 }
 
 /// A step can be rated when all others within two periods are known, and decided when these are rated.
@@ -172,14 +187,13 @@ void VelocitySteps::hand_on(PreparedSegment whole, std::vector<PreparedSegment>&
 }
 
 bool VelocitySteps::has_gentle_step(double from_ms, double to_ms) const {
-  return std::any_of(steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(decided_), [&](const Step& step) {
-    return step.is_gentle && step.place_ms > from_ms && step.place_ms < to_ms;
-  });
+  for (std::size_t i = 0; i < decided_; ++i)
+    if (steps_[i].is_gentle && steps_[i].place_ms > from_ms && steps_[i].place_ms < to_ms) return true;
+  return false;
 }
 
 PreparedSegment* VelocitySteps::starting_at(double place_ms) {
-  return &*std::partition_point(held_.begin(), held_.end(),
-                                [&](const PreparedSegment& held) { return held.segment.start_ms < place_ms; });
+  return &held_[held_.first_not([&](const PreparedSegment& held) { return held.segment.start_ms < place_ms; })];
 }
 
 }  // namespace pmac::motion

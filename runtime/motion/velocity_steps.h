@@ -15,10 +15,10 @@
 // Segments are held back until the steps shortly after them are known.
 #pragma once
 
-#include <deque>
 #include <limits>
 #include <vector>
 
+#include "runtime/motion/ring.h"
 #include "runtime/motion/segment.h"
 
 namespace pmac::motion {
@@ -42,12 +42,14 @@ class VelocitySteps {
 
  private:
   struct Step {
-    double place_ms;                      // programmed time
-    std::vector<double> change_mu_ms;     // [motor], absolute, at full rate
+    double place_ms = 0;                   // programmed time
+    Row<double> change_mu_ms;             // [motor], absolute, at full rate
     double own_rate = 0;                  // allowed with the steps around it
     bool is_gentle = false;
   };
-  void compare(const Segment& before, PreparedSegment& after);
+  struct Ends { double start_speed, end_speed; bool moves_at_start, moves_at_end; };
+  static Ends ends_of(const Segment& segment);
+  void compare(const Segment& before, const Ends& before_ends, PreparedSegment& after, const Ends& after_ends);
   void decide_steps(double known_ms);
   double rate_that_fits(std::size_t at) const;
   double share_taken(std::size_t motor, std::size_t at, double rate) const;
@@ -59,8 +61,9 @@ class VelocitySteps {
 
   std::vector<MotorLimits> limits_;
   double period_ms_;
-  std::deque<PreparedSegment> held_;
-  std::deque<Step> steps_;                // of the held segments and shortly before
+  Ring<PreparedSegment> held_;
+  Ends last_ends_{};                      // of the newest
+  Ring<Step> steps_;                      // of the held segments and shortly before
   std::size_t rated_ = 0, decided_ = 0;   // steps_ before these have a rate, are decided
 };
 

@@ -207,10 +207,13 @@ bool any_plant(const Machine::State& s, std::span<const int> motors) {
   return std::any_of(motors.begin(), motors.end(), [&](int motor) { return has_plant(s.elements, motor); });
 }
 
+bool any_watched(const Machine::State& s, std::span<const int> motors) {
+  return std::any_of(motors.begin(), motors.end(), [&](int n) { return is_watched(s, s.motors[static_cast<std::size_t>(n)]); });
+}
+
 int run_servos(Machine::State& s, std::span<const int> motors, int count, std::span<double> commanded_mu, std::span<double> actual_mu) {
   s.trips.clear();
-  if (std::none_of(motors.begin(), motors.end(), [&](int n) { return is_watched(s, s.motors[static_cast<std::size_t>(n)]); }))
-    return pass_through(s, motors, count, commanded_mu, actual_mu);
+  if (!any_watched(s, motors)) return pass_through(s, motors, count, commanded_mu, actual_mu);
   std::array<Run, bytecode::kMaxMotors> runs;
   int used = count;
   for (bool all_alike = false; !all_alike;) {  // again from the beginning where one has cut the run short, so that all end with it

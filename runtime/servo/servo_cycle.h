@@ -17,6 +17,9 @@ namespace pmac::runtime {
 /// out. Answers how many of the interrupts count; what happened at the last of them is in state.trips.
 int run_servos(Machine::State& state, std::span<const int> motors, int count, std::span<double> commanded_mu, std::span<double> actual_mu);
 
+/// True where something may happen at a servo interrupt that its commanded positions have to be looked at for: plants, switches, limits.
+bool any_watched(const Machine::State& state, std::span<const int> motors);
+
 /// True where a motor's actual position is not its commanded one.
 bool any_plant(const Machine::State& state, std::span<const int> motors);
 

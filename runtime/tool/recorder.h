@@ -28,6 +28,8 @@ class Recorder : public runtime::SampleSink {
   explicit Recorder(runtime::Machine& machine) : machine_(machine) {}
   void add_sink(RowSink sink) { sinks_.push_back(std::move(sink)); }
 
+  bool has_sinks() const { return !sinks_.empty(); }
+
   void take(const runtime::SampleBlock& block) override;
   /// Hands over what is held. Call once at the end of the run.
   void finish();
