@@ -40,8 +40,10 @@ void Chip::write(int reg, std::uint16_t value, Place place) {
   switch (reg) {
     case 0: return command(value, place);
     case 4: case 5: outputs_[static_cast<std::size_t>(reg - 4)] = value; return;
-    case 6: latch_low_ = value; return;
-    case 7: latch_high_ = value; return;
+    case 6: case 7:
+      (reg == 6 ? latch_low_ : latch_high_) = value;
+      if (latched_line_ == 0) latched_line_ = place.line;
+      return;
     default: break;
   }
   if (value != 0) warn_once(fmt::format("WR{}", reg), place, kModeRegisterWarning[reg]);
@@ -56,7 +58,23 @@ void Chip::command(std::uint16_t value, Place place) {
   const Command* known = find_command(code);
   if (known == nullptr) return error(place, fmt::format("there is no command {:02X}h", code));
   if (axes != 0) selected_ = axes;
+  latched_line_ = 0;
+  note_drive_data(*known, place);
   execute(*known, axes, place);
+}
+
+/// For end_of_script().
+void Chip::note_drive_data(const Command& command, Place place) {
+  const bool drives = command.kind == CommandKind::kAxisDrive || command.kind == CommandKind::kInterpolation;
+  const bool is_data = command.code == code::kTP || command.code == code::kCP || (!any_drive_command_ && (command.code <= code::kDV || command.code == code::kIPM));
+  any_drive_command_ = any_drive_command_ || drives;
+  if (drives || command.code == code::kRST) drive_data_line_ = 0;
+  else if (is_data && drive_data_line_ == 0 && !interpolation_) drive_data_line_ = place.line;  // while driving: an underrun, if at all
+}
+
+void Chip::end_of_script(Place place) {
+  if (latched_line_ > 0) error(place, fmt::format("the script ends before the command that uses the data of line {}", latched_line_));
+  else if (drive_data_line_ > 0 && reads_.empty()) error(place, fmt::format("the script ends without a drive command that uses what is written from line {} on", drive_data_line_));
 }
 
 namespace {

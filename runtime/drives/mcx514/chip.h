@@ -73,6 +73,9 @@ class Chip {
   /// RR0 to RR7. Reading RR1 clears it.
   std::uint16_t read(int reg, Place place);
 
+  /// The script is over: data that no command has used are an error.
+  void end_of_script(Place place);
+
   /// Executes until this time, until nothing drives, until the next segment may be written. False: `interrupted` said so, or the time
   /// of `latest` came.
   bool run_until(Time time);
@@ -104,6 +107,7 @@ class Chip {
   // What a write does (chip.cpp, chip_settings.cpp)
   void command(std::uint16_t value, Place place);
   void execute(const Command& command, std::uint32_t axes, Place place);
+  void note_drive_data(const Command& command, Place place);
   void set_data(const Command& command, std::uint32_t axes, Place place);
   void set_common(const Command& command, Place place);
   void set_mode(std::uint16_t mode, Place place);
@@ -161,6 +165,9 @@ class Chip {
   bool decelerates_ = false;                                  // 6Dh
   bool fresh_segment_data_ = false;                           // 06h or 08h was written since the last interpolation command
   Place fresh_place_;
+  int latched_line_ = 0;                                      // of a write to WR6 or WR7 that no command has used; 0: none
+  int drive_data_line_ = 0;                                   // of the first data for a drive since the last drive command; 0: none
+  bool any_drive_command_ = false;
   int refused_mode_line_ = 0;                                 // of an interpolation mode that was written while driving; 0: none
 
   Time now_ = 0, latest_ = time_from_clocks(std::numeric_limits<std::int64_t>::max());

@@ -1,6 +1,7 @@
 // Drive commands: what they need to be set, and the drives that come of them.
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -223,6 +224,7 @@ std::unique_ptr<Interpolator> Chip::make_interpolator(const Command& command, Pl
 }
 
 void Chip::start_interpolation(const Command& command, Place place) {
+  const bool has_segment_data = std::exchange(fresh_segment_data_, false);
   if (error_pending()) return error(place, fmt::format("{}: an error is pending in RR2; clear it by {:X}79h", named(command), mode_axes()));
   if (!check_mode(command, place)) return;
   for (std::size_t axis = 0; axis < kAxes; ++axis)
@@ -231,7 +233,7 @@ void Chip::start_interpolation(const Command& command, Place place) {
   if (interpolation_ && refused_mode_line_ > 0)
     return error(place, fmt::format("drive command while driving: {} interpolate since line {}, and the mode of line {} could not be taken; wait idle before",
                                     axes_text(mode_axes()), interpolation_->record.place.line, refused_mode_line_));
-  if (interpolation_ && !fresh_segment_data_)
+  if (interpolation_ && !has_segment_data)
     return error(place, fmt::format("drive command while driving: {} interpolate since line {}, and no finish point has been written for a next segment; wait idle before",
                                     axes_text(mode_axes()), interpolation_->record.place.line));
   if (queue_.size() >= kPreBuffer)
@@ -244,7 +246,6 @@ void Chip::start_interpolation(const Command& command, Place place) {
     return error(place, fmt::format("continuous interpolation at {} pulses/s; the limit is {}", speed.drive_pps, kContinuousLimit_pps));
   speed.vector = vector_speed();
   speed.decelerates = decelerates_;
-  fresh_segment_data_ = false;
   const std::uint32_t stretching = is_helix(command.code) && speed.vector != VectorSpeed::kThreeAxes ? 3u : mode_axes();
   Segment segment{std::move(pulses), command.code, mode_axes(), stretching, place};
   if (!interpolation_) return begin(std::move(segment), speed);

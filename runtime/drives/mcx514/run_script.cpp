@@ -23,6 +23,7 @@ bool execute(const ScriptItem& item, Chip& chip) {
 bool run_items(const Script& script, Chip& chip) {
   for (const ScriptItem& item : script.items)
     if (!execute(item, chip)) return false;
+  if (!script.items.empty()) chip.end_of_script({script.items.back().line, script.items.back().column});
   return true;
 }
 

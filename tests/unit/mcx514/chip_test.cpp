@@ -246,6 +246,20 @@ TEST_CASE("a listing that follows itself without waiting is refused at its mode 
   CHECK(waiting.position() == AxisCounts{10000, -10000, 0, 0});
 }
 
+TEST_CASE("a script that ends before its drive command says so, wherever it was cut", "[mcx514]") {
+  const std::string text = kListing;
+  int lines = 0;
+  for (std::size_t end = text.find('\n'); end + 1 < text.size(); end = text.find('\n', end + 1)) {
+    Chip chip;
+    run(chip, text.substr(0, end + 1));
+    REQUIRE(errors(chip).size() == 1);
+    CHECK(errors(chip)[0].find(std::to_string(++lines) + ": the script ends ") == 0);
+  }
+  Chip second;
+  run(second, std::string(kListing) + "wait idle\n" + data(5, "0106"));
+  CHECK(errors(second).size() == 1);
+}
+
 TEST_CASE("waiting for the end of a drive without end is refused", "[mcx514]") {
   Chip chip;
   run(chip, speeds(1000, 1000) + "WR0 <- 0152h\nwait 1 ms\nwait idle\nWR0 <- 0157h\n");
