@@ -180,7 +180,7 @@ int run(const RunOptions& options) {
   place = &machine;
 
   runtime::MotionStatistics statistics;
-  Recorder recorder(machine);
+  Recorder recorder(machine, options.record_actual);
   Outputs outputs(options, machine, recorder);
   budget.add_output([&outputs] { return outputs.size(); });
   machine.add_sink(&statistics);
