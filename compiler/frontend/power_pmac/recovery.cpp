@@ -169,8 +169,9 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     static constexpr std::string_view kCommands[] = {"kill", "dkill", "home", "homez", "enable", "disable", "ddisable", "adisable", "abort", "hold",
                                                      "pause", "resume", "run", "step", "start", "jog"};
     const antlr4::Token* number = statement_begin(parser);
-    if (!number || number->getTokenIndex() == 0) return false;
-    const std::string_view name = tree_.text_of(*number);
+    if (!number || number->getTokenIndex() == 0 || number->getTokenIndex() + 1 >= parser.getTokenStream()->size()) return false;
+    const antlr4::Token* digits = parser.getTokenStream()->get(number->getTokenIndex() + 1);
+    const std::string name = std::string(tree_.text_of(*number)) + std::string(tree_.text_of(*digits));   // a letter and its number are two tokens
     const bool is_variable = name.size() > 1 && std::string_view("PQMIpqmi").find(name[0]) != std::string_view::npos && name[1] >= '0' && name[1] <= '9';
     const antlr4::Token* word = parser.getTokenStream()->get(number->getTokenIndex() - 1);
     if (tree_.text_of(*word).find_first_of("+-/") == 0 && word->getTokenIndex() > 0) word = parser.getTokenStream()->get(word->getTokenIndex() - 1);
@@ -178,7 +179,8 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     std::transform(command.begin(), command.end(), command.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const bool is_command = std::find(std::begin(kCommands), std::end(kCommands), command) != std::end(kCommands);
     if (!is_variable || !is_command || word->getLine() != number->getLine()) return false;
-    const source::Span place = tree_.span_of(*number);
+    source::Span place = tree_.span_of(*number);
+    place.end = tree_.span_of(*digits).end;
     diagnostics_.error("PM3039", place, fmt::format("the number of a thing is a constant, a local variable, or an expression in parentheses: ({})", name)).fix =
         source::FixIt{place, fmt::format("({})", name), source::FixSafety::kSuggestion, {}};
     return true;
