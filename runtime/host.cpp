@@ -268,7 +268,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     default: break;
   }
   s_.elements.assign(a, value);
-  if (!(value > 0))
+  if (!(value > 0) || a.id == ElementId::kMotorServoCtrl || a.id == ElementId::kCoordInPosTimeOut)
     if (const std::string reason = why_nonsense(a, value); !reason.empty()) s_.warn(thread.source(), reason);
   const bool of_trigger = a.id >= ElementId::kSimMotorTriggerPos && a.id <= ElementId::kSimMotorFlagInvert;
   if (of_trigger) trigger_moved(s_, s_.motors[a.index[0]]);

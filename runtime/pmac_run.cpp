@@ -182,7 +182,7 @@ int run(const RunOptions& options) {
   place = &machine;
 
   runtime::MotionStatistics statistics;
-  Recorder recorder(machine);
+  Recorder recorder(machine, options.record_actual);
   Outputs outputs(options, machine, recorder);
   budget.add_output([&outputs] { return outputs.size(); });
   if (options.json != JsonDetail::kNone || options.stats) machine.add_sink(&statistics);

@@ -2,6 +2,7 @@
 // factory's defaults; both stop everything at once, with every motor at rest at position 0. Variables become 0. Simulated time goes on.
 // Source: Software Reference Manual p62; what becomes of positions and variables: assumed.
 #include <algorithm>
+#include <utility>
 
 #include "compiler/bytecode/element.h"
 #include "runtime/state.h"
@@ -47,6 +48,14 @@ void clear(Machine::State& s) {
   Thread& thread = s.online->thread;
   thread.coord = thread.motor = 1;
   thread.q = s.coord(1).q.data();
+}
+
+/// The machine around the controller (Sim.) does not change when the controller resets.
+void keep_surroundings(const ElementStore& before, ElementStore& after) {
+  const auto first = static_cast<unsigned>(ElementId::kSimMotorTriggerPos), last = static_cast<unsigned>(ElementId::kSimMotorFriction);
+  for (unsigned id = first; id <= last; ++id)
+    for (unsigned motor = 0; motor < bytecode::kMaxMotors; ++motor)
+      if (before.assigned(static_cast<ElementId>(id), motor)) after.assign({static_cast<ElementId>(id), {motor}}, before.get(static_cast<ElementId>(id), motor));
 }
 
 void restore(Machine::State& s, const Configuration& saved) {
@@ -95,7 +104,8 @@ void Machine::State::reset_now() {
   if (pending_reset == Reset::kNone) return;
   pending_reset = Reset::kNone;
   const double period_ms = servo_period_ms;
-  elements = ElementStore();
+  const ElementStore before = std::exchange(elements, ElementStore());
+  keep_surroundings(before, elements);
   clear(*this);
   if (!factory && saved) restore(*this, *saved);
   if (factory) elements.set(ElementId::kSysDefault, 1);

@@ -15,9 +15,6 @@ namespace {
 
 using bytecode::ProgramKind;
 using bytecode::SymbolKind;
-using ir::ControlVerb;
-
-bool is_plc_verb(ControlVerb verb) { return verb >= ControlVerb::kEnablePlc && verb <= ControlVerb::kStepPlc; }
 
 bool uses_q_of_addressed_coord(const ir::Stmt& statement) {
   if (const auto* globals = std::get_if<ir::Globals>(&statement.node))
@@ -171,98 +168,6 @@ void Binder::bind(ir::Locals& node, const source::Span& span) {
   }
 }
 
-void Binder::bind(ir::Jump& node, const source::Span& span) {
-  bind_arguments_of_call(node.arguments, node.by_reference);
-  if (node.kind != ir::JumpKind::kCallsub && !node.arguments.empty()) diagnostics_.error("PM3026", span, "only call and callsub take arguments");
-  if (!node.name.empty()) bind_routine_name(node, span);
-  if (!node.label) return;
-  bind_value(*node.label);
-  const auto constant = ir::constant_value(*node.label);
-  if (!constant) return;
-  const bool whole = *constant >= 0 && *constant <= 4294967295.0 && *constant == std::floor(*constant);
-  if (whole) jumps_.emplace_back(static_cast<std::int64_t>(*constant), span);
-  else diagnostics_.error("PM3027", span, "a label is a whole number from 0 to 4294967295");
-}
-
-void Binder::bind_routine_name(ir::Jump& node, const source::Span& span) {
-  if (buffer_) {
-    for (const ir::Routine& routine : buffer_->routines) {
-      if (routine.name != node.name) continue;
-      node.label = ir::make_number(static_cast<double>(routine.label), span);
-      mark_references(node.by_reference, node.arguments, routine.parameters, span, node.name);
-      return;
-    }
-  }
-  diagnostics_.error("PM3028", span, fmt::format("this buffer has no routine '{}'", node.name));
-}
-
-/// &P100 among the arguments of a call: the value comes back in it. What is called need not say so where its parameters are not known.
-void Binder::bind_arguments_of_call(std::vector<ir::ExprPtr>& arguments, std::vector<bool>& by_reference) {
-  by_reference.clear();
-  for (ir::ExprPtr& argument : arguments) {
-    auto* address = std::get_if<ir::AddressOf>(&argument->node);
-    by_reference.push_back(address != nullptr);
-    if (address) {
-      ir::ExprPtr place = std::move(address->place);
-      place->span = argument->span;
-      argument = std::move(place);
-    }
-    bind_value(*argument);
-    if (by_reference.back()) check_returned(*argument, "the call");
-  }
-}
-
-void Binder::check_returned(const ir::Expr& argument, std::string_view name) {
-  if (is_assignable(argument)) return;
-  diagnostics_.error("PM3035", argument.span, fmt::format("{} returns a value in this argument, so it must be a variable", name));
-}
-
-void Binder::mark_references(std::vector<bool>& by_reference, std::vector<ir::ExprPtr>& arguments, const std::vector<ir::Parameter>& parameters, const source::Span& span, std::string_view name) {
-  if (arguments.size() != parameters.size())
-    diagnostics_.error("PM3029", span, fmt::format("'{}' takes {} argument(s), not {}", name, parameters.size(), arguments.size()));
-  for (std::size_t i = 0; i < std::min(arguments.size(), parameters.size()); ++i) {
-    if (by_reference[i] && !parameters[i].by_reference) {
-      auto& error = diagnostics_.error("PM3038", arguments[i]->span, fmt::format("'{}' returns nothing in '{}'; leave out the &, or declare it as &{}", name, parameters[i].name, parameters[i].name));
-      if (parameters[i].span.valid()) error.notes.push_back({parameters[i].span, "the parameter is declared here"});
-    }
-    if (!by_reference[i] && parameters[i].by_reference) check_returned(*arguments[i], fmt::format("'{}'", name));
-    by_reference[i] = parameters[i].by_reference;
-  }
-}
-
-void Binder::bind(ir::Call& node, const source::Span& span) {
-  bind_arguments_of_call(node.arguments, node.by_reference);
-  if (node.arguments.size() > bytecode::kMaxArguments) diagnostics_.error("PM3007", span, fmt::format("a call has at most {} arguments", bytecode::kMaxArguments));
-  if (!node.name.empty()) return bind_named_call(node, span);
-  bind_value(*node.number);
-  const auto constant = ir::constant_value(*node.number);
-  if (!constant) return;
-  if (!(*constant >= 0 && *constant <= 4294967295.0)) return void(diagnostics_.error("PM3027", span, "a subprogram number is from 0 to 4294967295"));
-  const double whole = std::floor(*constant);
-  node.subprogram = static_cast<std::int64_t>(whole);
-  const auto label = static_cast<std::int64_t>(std::llround((*constant - whole) * 1e6));
-  node.label = label > 0 ? label : -1;
-  const std::vector<ir::Parameter>* parameters = label > 0 ? nullptr : project_.names.parameters_of(node.subprogram);
-  if (parameters && !parameters->empty()) mark_references(node.by_reference, node.arguments, *parameters, span, fmt::format("subprog {}", node.subprogram));
-}
-
-void Binder::bind_named_call(ir::Call& node, const source::Span& span) {
-  const Name* name = project_.names.find(node.name);
-  if (!name || name->kind != SymbolKind::kSubprog) {
-    report_unknown(node.name, node.name_span, "subprogram");
-    return;
-  }
-  node.subprogram = name->number;
-  if (node.routine.empty()) return mark_references(node.by_reference, node.arguments, name->parameters, span, node.name);
-  const auto routine = name->routines.find(node.routine);
-  if (routine == name->routines.end()) {
-    diagnostics_.error("PM3028", node.name_span, fmt::format("subprogram '{}' has no routine '{}'", node.name, node.routine));
-    return;
-  }
-  node.label = routine->second.label;
-  mark_references(node.by_reference, node.arguments, routine->second.parameters, span, node.routine);
-}
-
 void Binder::bind(ir::CodeLine& node, const source::Span&) {
   if (node.call) bind_statement(*node.call);
   for (ir::LineWord& word : node.words) {
@@ -300,67 +205,6 @@ void Binder::bind(ir::Move& node, const source::Span& span) {
 }
 void Binder::bind(ir::Dwell& node, const source::Span&) { bind_value(*node.time_ms); }
 void Binder::bind(ir::Delay& node, const source::Span&) { bind_value(*node.time_ms); }
-
-void Binder::bind(ir::Control& node, const source::Span&) {
-  const bool names_program = node.verb == ControlVerb::kBegin || node.verb == ControlVerb::kStart;
-  for (std::size_t i = 0; i < node.arguments.size(); ++i) {
-    ir::ExprPtr& argument = node.arguments[i];
-    if (!argument) continue;
-    auto* use = std::get_if<ir::NameUse>(&argument->node);
-    const bool without_parentheses = use && argument->span.end - argument->span.begin == use->name.size();
-    const bool bare_number = without_parentheses && i == 0 && !use->has_arguments && !is_plc_verb(node.verb) && node.verb != ControlVerb::kReportPointer;
-    if (use && is_plc_verb(node.verb) && !is_variable(use->name)) bind_program_name(*argument, SymbolKind::kPlc, "PLC program");
-    else if (use && names_program && i == 1) bind_program_name(*argument, SymbolKind::kProg, "motion program");
-    else if (use && node.verb == ControlVerb::kReportPointer && use->has_arguments) bind_pointer_element(*argument);
-    else if (use && node.verb == ControlVerb::kReportPointer) bind_program_name(*argument, SymbolKind::kPointer, "pointer");
-    else bind_value(*argument);
-    if (bare_number) check_bare_number(*argument);
-  }
-  check_control_number(node);
-}
-
-/// kill m: the name of a local variable; of another one its value stands in parentheses.
-void Binder::check_bare_number(const ir::Expr& number) {
-  const auto* variable = std::get_if<ir::Variable>(&number.node);
-  if (!variable || (variable->variable_class == ir::VariableClass::kL && !variable->index)) return;
-  diagnostics_.error("PM3039", number.span, fmt::format("the number of a thing is a constant, a local variable, or an expression in parentheses: ({})", variable->name)).fix =
-      source::FixIt{number.span, "(" + variable->name + ")", source::FixSafety::kSuggestion, {}};
-}
-
-void Binder::check_control_number(const ir::Control& node) {
-  if (node.arguments.empty() || !node.arguments[0] || node.verb == ControlVerb::kPset || node.verb == ControlVerb::kReportPointer) return;
-  const auto value = ir::constant_value(*node.arguments[0]);
-  if (!value) return;
-  if (node.verb == ControlVerb::kReportPointer || node.verb == ControlVerb::kReportAlias) return;  // a variable
-  const bool jogs = node.verb >= ControlVerb::kJogPlus && node.verb <= ControlVerb::kOpenLoop;
-  const bool asks = node.verb >= ControlVerb::kReportPosition && node.verb <= ControlVerb::kReportStatus;
-  const bool motor = jogs || asks || node.verb == ControlVerb::kReportAxisDefinition;
-  const int most = (is_plc_verb(node.verb) ? bytecode::kMaxPlcs : motor ? bytecode::kMaxMotors : bytecode::kMaxCoords) - 1;
-  const bool all = std::isinf(*value) && *value > 0;
-  const bool fits = all || (*value >= 0 && *value <= most && *value == std::floor(*value));
-  const char* thing = is_plc_verb(node.verb) ? "PLC program" : motor ? "motor" : "coordinate system";
-  if (!fits) diagnostics_.error("PM3009", node.arguments[0]->span, fmt::format("the number of a {} is 0 to {}", thing, most));
-}
-
-/// Name(2)->: the number of the variable.
-void Binder::bind_pointer_element(ir::Expr& expr) {
-  bind_value(expr);
-  const auto* variable = std::get_if<ir::Variable>(&expr.node);
-  const bool is_pointer = variable && variable->variable_class == ir::VariableClass::kM && !variable->index;
-  if (!is_pointer) diagnostics_.error("PM3004", expr.span, "an element of an array of pointers is wanted, with a constant index");
-  expr.node = ir::Number{is_pointer ? static_cast<double>(variable->number) : 0};
-}
-
-void Binder::bind_program_name(ir::Expr& expr, SymbolKind kind, std::string_view what) {
-  const std::string text = std::get<ir::NameUse>(expr.node).name;
-  const Name* name = project_.names.find(text);
-  if (name && name->kind == kind) {
-    expr.node = ir::Number{static_cast<double>(name->number)};
-    return;
-  }
-  report_unknown(text, expr.span, what);
-  expr.node = ir::Number{0};
-}
 
 void Binder::bind(ir::AddressCoord& node, const source::Span&) {
   project_.addressed_coord = static_cast<std::int64_t>(ir::constant_value(*node.number).value_or(1));

@@ -40,6 +40,7 @@ struct RunOptions {
   std::string record, gather;
   std::string trace;                                          // a file, or - for standard output
   bool trace_instructions = false;
+  bool record_actual = false;                                 // Motor[].ActPos in records
   std::uint64_t trace_limit = 1'000'000;                      // records
   std::vector<std::string> plots;
   std::string emit;

@@ -16,7 +16,10 @@ void Recorder::take(const runtime::SampleBlock& block) {
     row_of[m] = static_cast<std::size_t>(std::find(block.motors.begin(), block.motors.end(), motors_[m]) - block.motors.begin());
   for (int k = 0; k < block.count; ++k) {
     held_.push_back(block.time_ms(k) / 1000.0);
-    for (std::size_t row : row_of) held_.push_back(block.at(static_cast<int>(row), k));
+    for (std::size_t row : row_of) {
+      held_.push_back(block.at(static_cast<int>(row), k));
+      if (per_motor_ == 2) held_.push_back(block.actual_at(static_cast<int>(row), k));
+    }
   }
   if (!fixed_ && held_.size() >= kHeldValues) fix_columns();
   if (fixed_) emit_held();
@@ -25,7 +28,7 @@ void Recorder::take(const runtime::SampleBlock& block) {
 /// In pieces, so that what waited for the columns is not in memory twice.
 void Recorder::emit_held() {
   constexpr std::size_t kRows = 4096;
-  const std::size_t width = 1 + motors_.size(), rows = held_.size() / width;
+  const std::size_t width = motor_width(), rows = held_.size() / width;
   for (std::size_t first = 0; first < rows; first += kRows) {
     const std::size_t count = std::min(kRows, rows - first);
     emit(std::span<const double>(held_).subspan(first * width, count * width), count);
@@ -41,13 +44,14 @@ void Recorder::take_new_motors(std::span<const int> motors) {
       continue;
     }
     const auto at = std::upper_bound(motors_.begin(), motors_.end(), motor) - motors_.begin();
-    const std::size_t old_width = 1 + motors_.size();
+    const std::size_t old_width = motor_width();
+    const auto before = static_cast<std::ptrdiff_t>(1 + per_motor_ * static_cast<std::size_t>(at));
     std::vector<double> wider;
     for (std::size_t row = 0; row < held_.size(); row += old_width) {
       const auto first = held_.begin() + static_cast<std::ptrdiff_t>(row);
-      wider.insert(wider.end(), first, first + 1 + at);
-      wider.push_back(0.0);  // it has not moved yet
-      wider.insert(wider.end(), first + 1 + at, first + static_cast<std::ptrdiff_t>(old_width));
+      wider.insert(wider.end(), first, first + before);
+      wider.insert(wider.end(), per_motor_, 0.0);  // it has not moved yet
+      wider.insert(wider.end(), first + before, first + static_cast<std::ptrdiff_t>(old_width));
     }
     held_ = std::move(wider);
     motors_.insert(motors_.begin() + at, motor);
@@ -58,7 +62,10 @@ void Recorder::fix_columns() {
   fixed_ = true;
   const std::vector<int> coords = machine_.coords_in_use();
   std::vector<std::string> names{"time_s"};
-  for (int motor : motors_) names.push_back(fmt::format("Motor[{}].DesPos", motor));
+  for (int motor : motors_) {
+    names.push_back(fmt::format("Motor[{}].DesPos", motor));
+    if (per_motor_ == 2) names.push_back(fmt::format("Motor[{}].ActPos", motor));
+  }
   for (int coord : coords) {
     const std::uint32_t axes = machine_.axes_of(coord);
     for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
@@ -73,14 +80,14 @@ void Recorder::fix_columns() {
 }
 
 void Recorder::emit(std::span<const double> motor_rows, std::size_t count) {
-  const std::size_t width = 1 + motors_.size();
+  const std::size_t width = motor_width();
   std::array<double, bytecode::kMaxMotors> motor_mu{};
   motion::AxisVector axis_uu{};
   out_.clear();
   for (std::size_t row = 0; row < count; ++row) {
     const std::span<const double> values = motor_rows.subspan(row * width, width);
     out_.insert(out_.end(), values.begin(), values.end());
-    for (std::size_t m = 0; m < motors_.size(); ++m) motor_mu[static_cast<std::size_t>(motors_[m])] = values[1 + m];
+    for (std::size_t m = 0; m < motors_.size(); ++m) motor_mu[static_cast<std::size_t>(motors_[m])] = values[1 + per_motor_ * m];
     int mapped = -1;
     for (const AxisColumn& column : axes_) {
       if (column.coord != mapped) machine_.axes_from_motors(column.coord, motor_mu, axis_uu);

@@ -18,14 +18,15 @@ struct RowSink {
   std::function<void(std::span<const double> rows)> rows;
 };
 
-/// Columns: time_s, Motor[n].DesPos by motor number, then axes: X where one coordinate system has motors, &2.X where several have.
+/// Columns: time_s, Motor[n].DesPos (and Motor[n].ActPos on request) by motor number, then axes: X where one coordinate system has motors, &2.X where several have.
 /// The columns are fixed when kHeldValues values have come in or at finish(); a motor that moves for the first time before that
 /// has its column from the start.
 class Recorder : public runtime::SampleSink {
  public:
   static constexpr std::size_t kHeldValues = 500'000;
 
-  explicit Recorder(runtime::Machine& machine) : machine_(machine) {}
+  /// with_actual: Motor[n].ActPos behind every Motor[n].DesPos.
+  explicit Recorder(runtime::Machine& machine, bool with_actual = false) : machine_(machine), per_motor_(with_actual ? 2 : 1) {}
   void add_sink(RowSink sink) { sinks_.push_back(std::move(sink)); }
 
   bool has_sinks() const { return !sinks_.empty(); }
@@ -35,19 +36,21 @@ class Recorder : public runtime::SampleSink {
   void finish();
 
   /// Values of a row; valid from the first begin().
-  std::size_t width() const { return 1 + motors_.size() + axes_.size(); }
+  std::size_t width() const { return motor_width() + axes_.size(); }
 
   /// Motors that moved for the first time when the columns were fixed already.
   const std::vector<int>& late_motors() const { return late_motors_; }
 
  private:
   struct AxisColumn { int coord; int axis; };
+  std::size_t motor_width() const { return 1 + per_motor_ * motors_.size(); }
   void take_new_motors(std::span<const int> motors);
   void fix_columns();
   void emit_held();
   void emit(std::span<const double> motor_rows, std::size_t count);
 
   runtime::Machine& machine_;
+  const std::size_t per_motor_;     // columns
   std::vector<RowSink> sinks_;
   std::vector<int> motors_;
   std::vector<int> late_motors_;

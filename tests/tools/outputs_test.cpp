@@ -50,6 +50,22 @@ TEST_CASE("option json holds status, time, moves, motors, outputs and faults", "
   CHECK_FALSE(summary.contains("outputs"));
 }
 
+TEST_CASE("option record-act shows where a motor with a plant is", "[tools]") {
+  const Workspace w;
+  w.write("lag.pmc", "&1 #1->1000X #2->1000Y\nSim.Motor[1].Plant=1 Motor[1].FatalFeLimit=0\nopen prog 1\nlinear abs ta100 ts0 F100\nX10 Y10\nclose\n");
+  REQUIRE(w.run("pmac-run", "lag.pmc -e '&1b1r' --until 0.5 --record r.csv --record-act").code == 0);
+  const auto rows = csv(w.read("r.csv"));
+  CHECK(rows[0] == std::vector<std::string>{"time_s", "Motor[1].DesPos", "Motor[1].ActPos", "Motor[2].DesPos", "Motor[2].ActPos", "X", "Y"});
+  bool lags = false;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    lags = lags || std::stod(rows[i][1]) > std::stod(rows[i][2]) + 1;
+    CHECK(rows[i][3] == rows[i][4]);                                  // without a plant: where it is commanded to be
+    CHECK(std::stod(rows[i][5]) == Approx(std::stod(rows[i][1]) / 1000).margin(1e-9));
+  }
+  CHECK(lags);
+  CHECK(std::stod(rows.back()[2]) == Approx(10000).margin(1));        // it has settled
+}
+
 TEST_CASE("option record has a row at 0, one a servo cycle, and the axes as forward map of the motors", "[tools]") {
   const Workspace w;
   REQUIRE(w.run("pmac-run", program("02_basic_moves.pmc") + " -e '&1b1r' --record r.csv").code == 0);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <iterator>
 
 #include "compiler/frontend/power_pmac/frontend.h"
 #include "compiler/frontend/power_pmac/syntax_tree.h"
@@ -125,7 +127,7 @@ class Recovery : public antlr4::DefaultErrorStrategy {
   void describe(antlr4::Parser& parser, const antlr4::RecognitionException& error) {
     const auto* offending = error.getOffendingToken();
     if (parser.getContext()->getRuleIndex() == Parser::RuleBuffer && (offending->getType() == Token::EOF || offending->getType() == Parser::OPEN)) return report_open_buffer(parser);
-    if (describe_missing_brace(parser, *offending) || describe_unknown_word(parser, *offending)) return;
+    if (describe_missing_brace(parser, *offending) || describe_unknown_word(parser, *offending) || describe_bare_number(parser)) return;
     const auto expected = error.getExpectedTokens();
     const std::string wanted = expected.size() == 1 ? describe_token(static_cast<std::size_t>(expected.getSingleElement())) : std::string();
     const antlr4::Token* before = parser.getTokenStream()->LT(-1);
@@ -159,6 +161,28 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     if (!in_block || (next != Parser::CLOSE && next != Parser::OPEN && next != Token::EOF)) return false;
     auto& message = diagnostics_.error("PM2007", tree_.span_of(offending), fmt::format("missing }} before {}", quoted(offending)));
     message.notes.push_back({tree_.span_of(*parser.getContext()->start), "the block was opened here"});
+    return true;
+  }
+
+  /// kill P1: read as kill, and then an assignment to P1 that has no =.
+  bool describe_bare_number(antlr4::Parser& parser) {
+    static constexpr std::string_view kCommands[] = {"kill", "dkill", "home", "homez", "enable", "disable", "ddisable", "adisable", "abort", "hold",
+                                                     "pause", "resume", "run", "step", "start", "jog"};
+    const antlr4::Token* number = statement_begin(parser);
+    if (!number || number->getTokenIndex() == 0 || number->getTokenIndex() + 1 >= parser.getTokenStream()->size()) return false;
+    const antlr4::Token* digits = parser.getTokenStream()->get(number->getTokenIndex() + 1);
+    const std::string name = std::string(tree_.text_of(*number)) + std::string(tree_.text_of(*digits));   // a letter and its number are two tokens
+    const bool is_variable = name.size() > 1 && std::string_view("PQMIpqmi").find(name[0]) != std::string_view::npos && name[1] >= '0' && name[1] <= '9';
+    const antlr4::Token* word = parser.getTokenStream()->get(number->getTokenIndex() - 1);
+    if (tree_.text_of(*word).find_first_of("+-/") == 0 && word->getTokenIndex() > 0) word = parser.getTokenStream()->get(word->getTokenIndex() - 1);
+    std::string command(tree_.text_of(*word));
+    std::transform(command.begin(), command.end(), command.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool is_command = std::find(std::begin(kCommands), std::end(kCommands), command) != std::end(kCommands);
+    if (!is_variable || !is_command || word->getLine() != number->getLine()) return false;
+    source::Span place = tree_.span_of(*number);
+    place.end = tree_.span_of(*digits).end;
+    diagnostics_.error("PM3039", place, fmt::format("the number of a thing is a constant, a local variable, or an expression in parentheses: ({})", name)).fix =
+        source::FixIt{place, fmt::format("({})", name), source::FixSafety::kSuggestion, {}};
     return true;
   }
 
