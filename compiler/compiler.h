@@ -33,6 +33,7 @@ struct Options {
   std::vector<std::string> include_dirs;
   std::vector<std::pair<std::string, std::string>> defines;  // -D name[=text]
   source::WarningOptions warnings;                           // -W...
+  int max_include_depth = 64;                                // of #include in #include
   bool plain_move_fast_path = true;                          // false: every line goes through the grammar
 };
 

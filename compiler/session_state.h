@@ -11,6 +11,7 @@ namespace pmac::compiler {
 struct Session::State {
   explicit State(Options o) : options(std::move(o)), warning_control(sources, options.warnings), frontend(sources, diagnostics, options.include_dirs) {
     diagnostics.set_filter(&warning_control);
+    frontend.set_max_include_depth(options.max_include_depth);
     frontend.read_plain_moves(options.plain_move_fast_path);
     for (const auto& [name, text] : options.defines) frontend.define(name, text);
   }

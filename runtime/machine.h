@@ -100,6 +100,7 @@ struct RunLimits {
   double max_ms = 3'600'000;
   double idle_ms = 10;
   std::function<bool()> interrupted;
+  std::function<bool()> over_budget;  // of the owner: the run ends as at the limit of instructions
   bool more_follows = false;        // another run goes on from here: nothing is closed or sampled beyond the end
 };
 

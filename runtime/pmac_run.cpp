@@ -9,6 +9,7 @@
 
 #include "compiler/compiler.h"
 #include "runtime/machine.h"
+#include "runtime/tool/budget.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/drive_run.h"
 #include "runtime/tool/emit.h"
@@ -37,7 +38,7 @@ void catch_signals() {
 bool shows_progress(const RunOptions& options) { return !options.quiet && isatty(STDERR_FILENO) != 0; }
 
 /// Messages of the machine, as they come: faults and refusals on standard error, answers on standard output.
-runtime::MachineObservers observers(const RunOptions& options, Report& report, runtime::Machine*& machine, Console& console,
+runtime::MachineObservers observers(const RunOptions& options, Report& report, Budget& budget, runtime::Machine*& machine, Console& console,
                                     runtime::LimitCheck*& excuse, DriveRun& drive) {
   runtime::MachineObservers o;
   const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
@@ -52,7 +53,8 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   o.warning = [&machine](bytecode::SourceLine source, const std::string& text) {
     std::fprintf(stderr, "%s: warning: %s\n", machine->place(source).c_str(), text.c_str());
   };
-  o.move = [&report, &drive](const runtime::MoveRecord& move) {
+  o.move = [&report, &budget, &drive](const runtime::MoveRecord& move) {
+    budget.count_move();
     report.add(move);
     drive.take(move);
   };
@@ -77,18 +79,21 @@ runtime::MachineObservers observers(const RunOptions& options, Report& report, r
   return o;
 }
 
-runtime::RunLimits limits(const RunOptions& options) {
+runtime::RunLimits limits(const RunOptions& options, Budget& budget) {
   runtime::RunLimits l;
   if (options.until_s) l.until_ms = *options.until_s * 1000.0;
   l.max_ms = options.max_time_s * 1000.0;
   l.interrupted = [] { return g_interrupted.load(); };
+  l.over_budget = [&budget] { return !budget.reached().empty(); };
   return l;
 }
 
 /// Says why a run that did not come to its own end was ended.
-void explain_end(const RunOptions& options, const runtime::RunOutcome& outcome) {
+void explain_end(const RunOptions& options, Budget& budget, const runtime::RunOutcome& outcome) {
   if (outcome.end == runtime::RunEnd::kTimeLimit)
     std::fprintf(stderr, "pmac-run: the time limit of %g s is reached (--max-time)\n", options.max_time_s);
+  else if (outcome.end == runtime::RunEnd::kBudget && !budget.reached().empty())
+    std::fprintf(stderr, "pmac-run: %s\n", budget.reached().c_str());
   else if (outcome.end == runtime::RunEnd::kBudget)
     std::fprintf(stderr, "pmac-run: the limit of %llu instructions is reached (--max-instructions)\n",
                  static_cast<unsigned long long>(options.max_instructions));
@@ -109,9 +114,9 @@ int exit_code(const runtime::Machine& machine, const Report& report, const runti
 }
 
 /// The console first, until its input ends; then the run goes on as without one.
-runtime::RunOutcome run_machine(const RunOptions& options, runtime::Machine& machine, Console& console) {
-  if (!options.console) return machine.run(limits(options));
-  runtime::RunLimits rest = limits(options);
+runtime::RunOutcome run_machine(const RunOptions& options, Budget& budget, runtime::Machine& machine, Console& console) {
+  if (!options.console) return machine.run(limits(options, budget));
+  runtime::RunLimits rest = limits(options, budget);
   const runtime::RunOutcome outcome = console.run(machine, rest);
   const bool over = outcome.end == runtime::RunEnd::kInterrupted || outcome.end == runtime::RunEnd::kBudget || outcome.end == runtime::RunEnd::kTimeLimit;
   if (!over) return machine.run(rest);
@@ -124,8 +129,10 @@ runtime::RunOutcome run_machine(const RunOptions& options, runtime::Machine& mac
 int run(const RunOptions& options) {
   compiler::Options compile_options;
   compile_options.include_dirs = options.include_dirs;
+  compile_options.max_include_depth = options.max_include_depth;
   compile_options.defines = options.defines;
   compiler::Session session(compile_options);
+  Budget budget(options);
   Report report(options.json == JsonDetail::kMoves || options.stats);
   runtime::Machine* place = nullptr;
   runtime::LimitCheck* excuse = nullptr;
@@ -142,8 +149,9 @@ int run(const RunOptions& options) {
     const auto typed = file == Console::kName ? console.typed_line(line) : std::nullopt;
     return typed ? typed : lines(file, line);
   };
-  machine_options.observers = observers(options, report, place, console, excuse, drive);
+  machine_options.observers = observers(options, report, budget, place, console, excuse, drive);
   Emitter emitter(options.emit);
+  budget.add_output([&emitter] { return emitter.printed(); });
   emitter.attach(machine_options.observers);
   runtime::Machine machine(machine_options);
   place = &machine;
@@ -151,6 +159,7 @@ int run(const RunOptions& options) {
   runtime::MotionStatistics statistics;
   Recorder recorder(machine);
   Outputs outputs(options, machine, recorder);
+  budget.add_output([&outputs] { return outputs.size(); });
   machine.add_sink(&statistics);
   runtime::LimitCheck limit_check([&machine](int motor, double time_ms) { return machine.activity(motor, time_ms); });
   if (options.check_limits) machine.add_sink(&limit_check);
@@ -168,12 +177,12 @@ int run(const RunOptions& options) {
 
   catch_signals();
   const auto wall_start = std::chrono::steady_clock::now();
-  const runtime::RunOutcome outcome = run_machine(options, machine, console);
+  const runtime::RunOutcome outcome = run_machine(options, budget, machine, console);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   if (shows_progress(options)) std::fprintf(stderr, "\r                              \r");
   recorder.finish();
   std::fputs(report.repeated_refusals().c_str(), stderr);
-  explain_end(options, outcome);
+  explain_end(options, budget, outcome);
   const bool idle_from_start = outcome.end == runtime::RunEnd::kIdle && report.move_count() == 0 && outcome.time_ms < 11;
   if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.console && !options.quiet && exit_code(machine, report, outcome) == kExitOk)
     std::fprintf(stderr, "pmac-run: loaded, and nothing was started; use -e '&1 b1r' to run program 1 in coordinate system 1\n");

@@ -212,6 +212,7 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
     if (now_ms >= stop_ms) { outcome.end = limits.until_ms && *limits.until_ms <= limits.max_ms ? RunEnd::kUntil : RunEnd::kTimeLimit; break; }
     if (instructions > options.max_instructions) { outcome.end = RunEnd::kBudget; break; }
     if (limits.interrupted && event % 256 == 0 && limits.interrupted()) { outcome.end = RunEnd::kInterrupted; break; }
+    if (limits.over_budget && event % 256 == 0 && limits.over_budget()) { outcome.end = RunEnd::kBudget; break; }
     if (now_ms >= next_progress_ms) {
       if (options.observers.progress) options.observers.progress(now_ms);
       next_progress_ms = now_ms + kProgressMs;

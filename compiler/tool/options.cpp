@@ -22,6 +22,7 @@ constexpr const char* kExamples = R"(Examples:
 void declare_input_options(CLI::App& app, Arguments& arguments) {
   app.add_option("files", arguments.files, "source files in load order; - reads standard input");
   app.add_option("-I", arguments.include_dirs, "look for #include files in this folder too")->type_name("DIR")->allow_extra_args(false);
+  app.add_option("--max-include-depth", arguments.max_include_depth, "give up at #include nested so deep")->type_name("N")->check(CLI::Range(1, 200))->capture_default_str();
   app.add_option("-D", arguments.defines, "define a macro before the first file")->type_name("NAME[=TEXT]")->allow_extra_args(false);
 }
 
@@ -66,6 +67,7 @@ Arguments parse_command_line(int argc, char** argv, std::optional<int>& exit_cod
 compiler::Options compiler_options(const Arguments& arguments) {
   compiler::Options options;
   options.include_dirs = arguments.include_dirs;
+  options.max_include_depth = arguments.max_include_depth;
   for (const std::string& define : arguments.defines) {
     const std::size_t equals = define.find('=');
     options.defines.emplace_back(define.substr(0, equals), equals == std::string::npos ? "" : define.substr(equals + 1));

@@ -14,6 +14,7 @@ constexpr int kOk = 0, kUserError = 1, kUsage = 2, kInternal = 70;
 
 struct Arguments {
   std::vector<std::string> files, include_dirs, defines, warnings;
+  int max_include_depth = 64;
   std::string output, emit, format = "text", color = "auto", explain;
   std::size_t error_limit = 100;
   std::size_t repeat_limit = 2;

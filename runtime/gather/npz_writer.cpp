@@ -102,6 +102,7 @@ class NpzWriter : public TableWriter {
 
   void append(std::span<const double> rows) override;
   void finish() override;
+  std::uint64_t size() const override { return file_.size() + (spilled_blocks_ * kBlockRows + block_rows_) * columns_.size() * sizeof(double); }
 
  private:
   double* column_of_block(std::size_t column) { return block_.data() + column * kBlockRows; }

@@ -39,6 +39,7 @@ class TextTableWriter : public TableWriter {
     }
   }
   void finish() override { file_.commit(); }
+  std::uint64_t size() const override { return file_.size(); }
 
  private:
   void append_row(std::span<const double> row) {

@@ -30,6 +30,8 @@ class TableWriter {
   virtual void append(std::span<const double> rows) = 0;
   /// Completes the file with the rows appended so far. Throws OutputError; then nothing keeps the name. Call at most once.
   virtual void finish() = 0;
+  /// Bytes that the rows so far have taken on the disk.
+  virtual std::uint64_t size() const = 0;
 };
 
 /// Throws OutputError when the file cannot be created, std::invalid_argument without columns.

@@ -16,9 +16,10 @@ constexpr const char* kFooter = R"(Examples:
   pmac-run contour.pmc -e '&1 b4r' --drive silverlode:max_speed=3000,max_accel=3000 --emit=frames
 
 Exit codes: 0 ok, 1 errors in the program, 2 usage or unreadable file, 3 simulated fault, limit or refused command,
-4 time or instruction limit reached, 70 internal error, 130 interrupted.)";
+4 a limit of time, instructions, moves, memory or output reached, 70 internal error, 130 interrupted.)";
 
 constexpr double kMaxSeconds = 1e9;
+constexpr std::uint64_t kMaxMib = 1u << 30;
 
 std::string check_seconds(const std::string& text) {
   char* end = nullptr;
@@ -85,7 +86,10 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--at", at, "on-line commands at a simulated time in seconds")->type_name("TIME COMMANDS")->type_size(2)->expected(0, 10'000'000)->allow_extra_args(false);
   app.add_option("--until", until, "run to this simulated time in seconds, or until idle")->type_name("idle|TIME")->capture_default_str();
   app.add_option("--max-time", max_time, "give up at this simulated time in seconds")->type_name("TIME")->capture_default_str();
-  app.add_option("--max-instructions", o.max_instructions, "give up after so many instructions")->capture_default_str();
+  app.add_option("--max-instructions", o.max_instructions, "give up after so many instructions")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--max-moves", o.max_moves, "give up after so many moves")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--max-memory", o.max_memory_mib, "give up at so much memory")->type_name("MIB")->check(CLI::Range(std::uint64_t{1}, kMaxMib))->capture_default_str();
+  app.add_option("--max-output", o.max_output_mib, "give up after so much output")->type_name("MIB")->check(CLI::Range(std::uint64_t{0}, kMaxMib))->capture_default_str();
   app.add_option("--record", o.record, "write every servo sample to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--gather", o.gather, "write what the program gathers to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--plot", o.plots, "draw path and motion to a .svg, .png or .html file")->type_name("FILE")->allow_extra_args(false);
@@ -102,6 +106,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();
   app.add_flag("--realtime", o.realtime, "with --console: simulated time follows the clock on the wall");
   app.add_option("-I", o.include_dirs, "folder for #include")->type_name("DIR")->allow_extra_args(false);
+  app.add_option("--max-include-depth", o.max_include_depth, "give up at #include nested so deep")->type_name("N")->check(CLI::Range(1, 200))->capture_default_str();
   app.add_option("-D", defines, "define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
   app.add_flag("-q,--quiet", o.quiet, "no progress, no answers of commands");
   try {

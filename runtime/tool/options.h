@@ -25,12 +25,16 @@ struct KinCheckOptions {
 struct RunOptions {
   std::vector<std::string> files;
   std::vector<std::string> include_dirs;
+  int max_include_depth = 64;
   std::vector<std::pair<std::string, std::string>> defines;
   std::vector<std::string> commands;                          // -e, in order, at time 0
   std::vector<std::pair<double, std::string>> timed_commands; // --at seconds, text
   std::optional<double> until_s;                              // absent: until idle
   double max_time_s = 3600;
   std::uint64_t max_instructions = 20'000'000'000;
+  std::uint64_t max_moves = 1'000'000'000;
+  std::uint64_t max_memory_mib = 8192;
+  std::uint64_t max_output_mib = 262'144;                     // of all files and stage records together
   std::string record, gather;
   std::vector<std::string> plots;
   std::string emit;

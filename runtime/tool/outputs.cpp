@@ -78,8 +78,22 @@ void Outputs::keep_for_plots(Recorder& recorder) {
                      },
                      [this](std::span<const double> rows) {
                        const std::size_t width = plot_columns_.size();
-                       for (std::size_t i = 0; i < rows.size(); ++i) plot_values_[i % width].push_back(rows[i]);
+                       for (std::size_t i = 0; i < rows.size(); i += width) keep_row(rows.subspan(i, width));
                      }});
+}
+
+/// A picture of a long run needs no more points than it has pixels: where they get too many, every second one goes.
+void Outputs::keep_row(std::span<const double> row) {
+  constexpr std::size_t kMostPoints = 1'000'000;
+  last_row_.assign(row.begin(), row.end());
+  if (plot_rows_++ % plot_stride_ != 0) return;
+  for (std::size_t column = 0; column < row.size(); ++column) plot_values_[column].push_back(row[column]);
+  if (plot_values_[0].size() < kMostPoints) return;
+  plot_stride_ *= 2;
+  for (std::vector<double>& values : plot_values_) {
+    for (std::size_t i = 0; i < values.size() / 2; ++i) values[i] = values[2 * i];
+    values.resize(values.size() / 2);
+  }
 }
 
 bool Outputs::finish() {
@@ -97,6 +111,8 @@ bool Outputs::finish() {
 
 /// Curves of the picture: the axes; the motors where no axis is defined. The path panel shows the first two axes.
 void Outputs::draw() {
+  if (plot_stride_ > 1)
+    for (std::size_t column = 0; column < last_row_.size(); ++column) plot_values_[column].push_back(last_row_[column]);
   runtime::PlotData data;
   const auto is_motor = [](const std::string& name) { return name.starts_with("Motor["); };
   const bool axes = std::any_of(plot_columns_.begin() + 1, plot_columns_.end(), [&](const auto& name) { return !is_motor(name); });

@@ -17,7 +17,6 @@ namespace {
 using Token = PreprocessorToken;
 using Kind = PreprocessorToken::Kind;
 
-constexpr int kMaxIncludeDepth = 64;
 constexpr std::size_t kMaxIncludes = 10000;             // of one file of the command line
 constexpr std::size_t kMaxIncludeBytes = 256u << 20;    // of one included file
 constexpr std::array<std::string_view, 15> kDirectives{"define",  "undef", "ifdef",  "ifndef",  "if",    "elif",   "else",     "endif",
@@ -210,9 +209,9 @@ void Preprocessor::include_directive(const Tokens& line, std::size_t at, const s
 
 void Preprocessor::include_file(const std::string& name, const source::Span& place) {
   if (includes_stopped_) return;
-  includes_stopped_ = include_depth_ >= kMaxIncludeDepth || include_count_ >= kMaxIncludes;
+  includes_stopped_ = include_depth_ >= max_include_depth_ || include_count_ >= kMaxIncludes;
   if (includes_stopped_) {
-    const std::string problem = include_depth_ >= kMaxIncludeDepth ? fmt::format("#include is nested more than {} deep; does the file include itself?", kMaxIncludeDepth)
+    const std::string problem = include_depth_ >= max_include_depth_ ? fmt::format("#include is nested more than {} deep; does the file include itself?", max_include_depth_)
                                                                   : fmt::format("more than {} files are included", kMaxIncludes);
     diagnostics_.error("PM1006", place, problem);
     return;

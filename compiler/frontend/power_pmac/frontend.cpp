@@ -43,6 +43,8 @@ void Frontend::record_lines() { state_->preprocessor.record_lines(); }
 const std::vector<SourceLine>& Frontend::recorded_lines() const { return state_->preprocessor.recorded(); }
 const std::vector<MacroDefinition>& Frontend::macro_definitions() const { return state_->preprocessor.definitions(); }
 
+void Frontend::set_max_include_depth(int depth) { state_->preprocessor.set_max_include_depth(depth); }
+
 void Frontend::read_plain_moves(bool on) { state_->reads_plain_moves = on; }
 
 ir::Unit Frontend::read(const std::string& name, std::string text) {

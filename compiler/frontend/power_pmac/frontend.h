@@ -35,6 +35,8 @@ class Frontend {
   /// Every #define so far, in order.
   const std::vector<MacroDefinition>& macro_definitions() const;
 
+  /// Errors at #include nested deeper.
+  void set_max_include_depth(int depth);
   /// Whether long runs of plain move lines are read in front of the grammar (plain_moves.h).
   void read_plain_moves(bool on);
 

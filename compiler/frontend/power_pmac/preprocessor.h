@@ -46,6 +46,7 @@ class Preprocessor {
 
   /// Expands a file that the source manager knows. Macros stay known for the next file.
   ExpandedText run(std::int32_t file);
+  void set_max_include_depth(int depth) { max_include_depth_ = depth; }
   /// From now on long runs of plain move lines are read here (plain_moves.h), unless lines are recorded.
   void read_plain_moves(bool on) { moves_wanted_ = on; }
   /// As -D name=text.
@@ -98,6 +99,7 @@ class Preprocessor {
   ExpandedText* out_ = nullptr;
   bool turbo_file_ = false;   // the file at hand has the comments of Turbo PMAC
   int include_depth_ = 0;
+  int max_include_depth_ = 64;
   std::size_t include_count_ = 0;
   bool includes_stopped_ = false;  // a limit was reached and reported
 };
