@@ -1,5 +1,7 @@
 #include "runtime/drives/drive.h"
 
+#include "runtime/drives/silverlode/silverlode_drive.h"
+
 namespace pmac::drives {
 namespace {
 
