@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLeastRateSquare = 1e-8;    // a ten-thousandth of the commanded speed
 constexpr int kBisections = 45;
+constexpr double kSteepest = 1.4;            // change of z from sample to sample
 constexpr double kTolerated = 1.0001;
 
 class Retimer {
@@ -55,9 +56,10 @@ void Retimer::load(std::size_t row) {
   }
 }
 
-/// z of the next sample that the accelerations allow: |p'' z + p' (next - z) / (2 period)| <= A for every axis.
+/// z of the next sample that the accelerations allow: |p'' z + p' (next - z) / (2 period)| <= A for every axis,
+/// and no jumps, to which nothing else would be in the way where p' is near 0.
 Retimer::Range Retimer::next_of(double z, double next_most) const {
-  Range range{0, next_most};
+  Range range{z / kSteepest, std::min(next_most, z * kSteepest)};
   for (std::size_t a = 0; a < first_.size(); ++a) {
     const double slope = first_[a] / (2 * motion_.period_s()), fixed = (second_[a] - slope) * z, most = limits_[a].accel_counts_s2 * loaded_room_;
     if (slope == 0) {
@@ -94,14 +96,18 @@ double Retimer::largest(double most, double next_most) const {
 Slowed Retimer::slowed() {
   const std::size_t rows = motion_.rows();
   std::vector<double> z(rows, 1.0);
+  if (rows >= 3) load(rows - 2);
+  const double end = rows >= 3 ? largest(speed_bound(), 1) : 1;       // at rest anything goes; as the sample before
   for (std::size_t row = rows; row-- > 0;) {
     load(row);
-    z[row] = largest(speed_bound(), row + 1 < rows ? z[row + 1] : 1);
+    const double next = row + 1 < rows ? z[row + 1] : end;
+    z[row] = largest(speed_bound(), next);
   }
   for (std::size_t row = 0; row + 1 < rows; ++row) {
     load(row);
     const Range next = next_of(z[row], z[row + 1]);
-    z[row + 1] = std::max(next.is_empty() ? std::min(z[row], z[row + 1]) : next.high, kLeastRateSquare);
+    const double wanted = next.is_empty() ? std::min(z[row], z[row + 1]) : next.high;
+    z[row + 1] = std::max(wanted, kLeastRateSquare);
   }
   return sampled(z);
 }
