@@ -181,6 +181,8 @@ int run(const RunOptions& options) {
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   if (shows_progress(options)) std::fprintf(stderr, "\r                              \r");
   recorder.finish();
+  for (const int motor : recorder.late_motors())
+    std::fprintf(stderr, "pmac-run: warning: motor %d moved for the first time when the columns of the record stood already, and is not in it\n", motor);
   std::fputs(report.repeated_refusals().c_str(), stderr);
   explain_end(options, budget, outcome);
   const bool idle_from_start = outcome.end == runtime::RunEnd::kIdle && report.move_count() == 0 && outcome.time_ms < 11;

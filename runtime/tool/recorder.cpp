@@ -9,6 +9,7 @@ namespace pmac::tool {
 
 void Recorder::take(const runtime::SampleBlock& block) {
   if (sinks_.empty()) return;
+  if (held_.capacity() == 0) held_.reserve(kHeldValues + kHeldValues / 8);
   take_new_motors(block.motors);
   std::vector<std::size_t> row_of(motors_.size());
   for (std::size_t m = 0; m < motors_.size(); ++m)
@@ -18,8 +19,17 @@ void Recorder::take(const runtime::SampleBlock& block) {
     for (std::size_t row : row_of) held_.push_back(block.at(static_cast<int>(row), k));
   }
   if (!fixed_ && held_.size() >= kHeldValues) fix_columns();
-  if (!fixed_) return;
-  emit(held_, held_.size() / (1 + motors_.size()));
+  if (fixed_) emit_held();
+}
+
+/// In pieces, so that what waited for the columns is not in memory twice.
+void Recorder::emit_held() {
+  constexpr std::size_t kRows = 4096;
+  const std::size_t width = 1 + motors_.size(), rows = held_.size() / width;
+  for (std::size_t first = 0; first < rows; first += kRows) {
+    const std::size_t count = std::min(kRows, rows - first);
+    emit(std::span<const double>(held_).subspan(first * width, count * width), count);
+  }
   held_.clear();
 }
 
@@ -84,8 +94,7 @@ void Recorder::emit(std::span<const double> motor_rows, std::size_t count) {
 
 void Recorder::finish() {
   if (!fixed_) fix_columns();
-  if (!held_.empty()) emit(held_, held_.size() / (1 + motors_.size()));
-  held_.clear();
+  emit_held();
 }
 
 }  // namespace pmac::tool

@@ -23,7 +23,7 @@ struct RowSink {
 /// has its column from the start.
 class Recorder : public runtime::SampleSink {
  public:
-  static constexpr std::size_t kHeldValues = 4'000'000;
+  static constexpr std::size_t kHeldValues = 500'000;
 
   explicit Recorder(runtime::Machine& machine) : machine_(machine) {}
   void add_sink(RowSink sink) { sinks_.push_back(std::move(sink)); }
@@ -42,6 +42,7 @@ class Recorder : public runtime::SampleSink {
   struct AxisColumn { int coord; int axis; };
   void take_new_motors(std::span<const int> motors);
   void fix_columns();
+  void emit_held();
   void emit(std::span<const double> motor_rows, std::size_t count);
 
   runtime::Machine& machine_;

@@ -145,3 +145,15 @@ TEST_CASE("a command that is refused at every scan is reported once, and its cou
   REQUIRE(j["refused"].size() == 1);
   CHECK(j["refused"][0]["count"] == 100);
 }
+
+TEST_CASE("record: a motor that moves when the columns stand is named", "[tools]") {
+  const Workspace w;
+  w.write("a.cfg", "&1 #1->1000X\nMotor[5].JogSpeed=1\n");
+  const std::string run = "a.cfg -e '#1j=10' --until 160 --record r.csv --at ";
+  const ToolResult early = w.run("pmac-run", run + "1 '#5j=100'");
+  CHECK(early.err.find("Motor[5]") == std::string::npos);
+  CHECK(w.read("r.csv").starts_with("time_s,Motor[1].DesPos,Motor[5].DesPos,X\n0,0,0,0\n"));
+  const ToolResult late = w.run("pmac-run", run + "150 '#5j=100'");
+  CHECK(late.err.find("motor 5 moved for the first time when the columns of the record stood already") != std::string::npos);
+  CHECK(w.read("r.csv").starts_with("time_s,Motor[1].DesPos,X\n"));
+}
