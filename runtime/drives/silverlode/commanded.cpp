@@ -61,6 +61,12 @@ void Commanded::finish(std::span<const double> counts_per_mu) {
   start_s_ = period_s_ * static_cast<double>(first);
 }
 
+double Commanded::furthest(std::size_t axis) const {
+  double furthest = 0;
+  for (const double value : counts_[axis]) furthest = std::max(furthest, std::abs(value));
+  return furthest;
+}
+
 double Commanded::sample(std::size_t axis, std::ptrdiff_t row) const {
   return counts_[axis][static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row, 0, static_cast<std::ptrdiff_t>(rows_) - 1))];
 }

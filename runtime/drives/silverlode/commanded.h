@@ -30,6 +30,8 @@ class Commanded {
   /// Of the motion's begin, in the time of the run.
   double start_s() const { return start_s_; }
 
+  /// The largest distance from 0, counts.
+  double furthest(std::size_t axis) const;
   std::size_t rows() const { return rows_; }
   /// Counts of a servo cycle from the begin of the motion; at rest outside of it.
   double sample(std::size_t axis, std::ptrdiff_t row) const;

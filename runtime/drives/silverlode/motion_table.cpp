@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "runtime/drives/silverlode/units.h"
 
 namespace pmac::drives::silverlode {
@@ -55,14 +57,19 @@ void stretch_all(MotionFit& result, double factor) {
   for (std::size_t i = 1; i < result.fit.ramp_ticks.size(); ++i) result.fit.ramp_ticks[i] = 2 * std::ceil(result.fit.ramp_ticks[i] * factor / 2 - 1e-9);
 }
 
+std::string too_long(const Slowed& slower) {
+  return fmt::format("within max_speed and max_accel the motion would take {:.3g} s, which is too long to be encoded; raise them, or lower scale", slower.duration_s);
+}
+
 }  // namespace
 
-MotionFit fit_within(const Commanded& motion, std::span<const CountLimits> limits, const FitSetup& setup) {
+std::variant<MotionFit, std::string> fit_within(const Commanded& motion, std::span<const CountLimits> limits, const FitSetup& setup) {
   std::vector<double> room(motion.rows(), kFirstRoom);
   MotionFit result{motion, {}, false, 1};
   std::vector<double> commanded_s;
   if (exceeds(motion, limits)) {
     Slowed slower = slowed_to(motion, limits, room);
+    if (!slower.motion.moves()) return too_long(slower);
     result = {std::move(slower.motion), {}, true, 1};
     commanded_s = std::move(slower.commanded_s);
   } else {
@@ -79,6 +86,7 @@ MotionFit fit_within(const Commanded& motion, std::span<const CountLimits> limit
     }
     narrow(room, result.fit, use, commanded_s, motion.period_s());
     Slowed slower = slowed_to(motion, limits, room);
+    if (!slower.motion.moves()) return too_long(slower);
     result = {std::move(slower.motion), {}, true, 1};
     commanded_s = std::move(slower.commanded_s);
   }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <variant>
 
 #include "runtime/drives/silverlode/retime.h"
 #include "runtime/drives/silverlode/spline_fit.h"
@@ -16,7 +18,7 @@ struct MotionFit {
   double stretch = 1;            // of all times besides, where slowing down did not settle
 };
 
-/// limits: [axis].
-MotionFit fit_within(const Commanded& motion, std::span<const CountLimits> limits, const FitSetup& setup);
+/// limits: [axis]. The reason where the motion would become too long.
+std::variant<MotionFit, std::string> fit_within(const Commanded& motion, std::span<const CountLimits> limits, const FitSetup& setup);
 
 }  // namespace pmac::drives::silverlode

@@ -116,6 +116,8 @@ Slowed Retimer::slowed() {
 Slowed Retimer::sampled(const std::vector<double>& z) const {
   const double period_s = motion_.period_s();
   Slowed slower;
+  for (std::size_t row = 0; row + 1 < z.size(); ++row) slower.duration_s += 2 * period_s / (std::sqrt(z[row]) + std::sqrt(z[row + 1]));
+  if (slower.duration_s > kMostSlowedRows * period_s) return slower;
   double time_s = 0, wanted_s = 0;             // end of the stretch before, next sample
   for (std::size_t row = 0; row + 1 < z.size(); ++row) {
     const double rate = std::sqrt(z[row]), next_rate = std::sqrt(z[row + 1]), span_s = 2 * period_s / (rate + next_rate);

@@ -14,8 +14,11 @@ namespace pmac::drives::silverlode {
 
 struct CountLimits { double speed_counts_s, accel_counts_s2; };
 
-/// A slowed motion, and the commanded time of every servo cycle of it.
+inline constexpr double kMostSlowedRows = 2e7;     // servo cycles of a slowed motion, more than two hours
+
+/// A slowed motion, and the commanded time of every servo cycle of it; both empty where it would last more than kMostSlowedRows.
 struct Slowed {
+  double duration_s = 0;
   Commanded motion;
   std::vector<double> commanded_s;
 };

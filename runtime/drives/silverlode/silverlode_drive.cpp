@@ -33,7 +33,7 @@ class SilverlodeDrive : public Drive {
 
  private:
   std::optional<std::string> check_axes() const;
-  void fit_motion();
+  std::optional<std::string> fit_motion();
   std::optional<std::string> make_table();
   void run_frames();
   void add_row(std::int64_t tick, std::span<const Profile> servos);
@@ -57,12 +57,15 @@ std::optional<std::string> SilverlodeDrive::check_axes() const {
   const std::size_t axes = commanded_.axes();
   for (const auto& [name, values] : {std::pair("max_speed", &settings_.max_speed_rpm), std::pair("max_accel", &settings_.max_accel_rpm_s)})
     if (values->size() != 1 && values->size() != axes) return fmt::format("{} has {} values for {} axes that move; give one, or one an axis", name, values->size(), axes);
+  for (std::size_t a = 0; a < axes; ++a)
+    if (commanded_.furthest(a) >= static_cast<double>(kFarPosition))
+      return fmt::format("Motor[{}] leaves the range of a servo, {} counts either side of 0; set scale", commanded_.motors()[a], kFarPosition);
   if (!settings_.ids.empty() && settings_.ids.size() != axes) return fmt::format("id has {} values for {} axes that move", settings_.ids.size(), axes);
   return std::nullopt;
 }
 
 /// Corners and ramps within the limits.
-void SilverlodeDrive::fit_motion() {
+std::optional<std::string> SilverlodeDrive::fit_motion() {
   commanded_s_ = commanded_.duration_s();
   std::vector<CountLimits> limits;
   for (std::size_t a = 0; a < commanded_.axes(); ++a)
@@ -70,10 +73,13 @@ void SilverlodeDrive::fit_motion() {
   FitSetup fit;
   fit.tolerance_counts = settings_.tolerance_counts;
   fit.least_ticks = even_ticks(settings_.least_slice_s(commanded_.axes()));
-  MotionFit made = fit_within(commanded_, limits, fit);
+  auto fitted = fit_within(commanded_, limits, fit);
+  if (auto* why = std::get_if<std::string>(&fitted)) return *why;
+  MotionFit& made = std::get<MotionFit>(fitted);
   commanded_ = std::move(made.motion);
   fit_ = std::move(made.fit);
   stretch_ = made.stretch;
+  return std::nullopt;
 }
 
 std::optional<std::string> SilverlodeDrive::make_table() {
@@ -173,7 +179,7 @@ void SilverlodeDrive::run_frames() {
 std::optional<std::string> SilverlodeDrive::encode() {
   commanded_.finish(settings_.counts_per_mu);
   if (auto why = check_axes()) return why;
-  fit_motion();
+  if (auto why = fit_motion()) return why;
   if (auto why = make_table()) return why;
   NetworkSetup network = settings_.network;
   network.host_ids.assign(table_.axes.size(), 16);
