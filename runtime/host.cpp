@@ -13,6 +13,7 @@
 #include "runtime/motor_moves.h"
 #include "runtime/set_up_check.h"
 #include "runtime/state.h"
+#include "runtime/trace.h"
 #include "runtime/value_text.h"
 
 namespace pmac::runtime {
@@ -39,6 +40,8 @@ void write_user_buffer(IoSpace& io, const ElementAddress& a, double value) {
 class MachineHost : public Host {
  public:
   explicit MachineHost(Machine::State& state) : s_(state) {}
+
+  InstructionWatcher* watcher() override { return s_.tracer && s_.tracer->open() ? s_.tracer.get() : nullptr; }
 
   double read_m(Thread& thread, int number) override {
     const PointerEntry& pointer = s_.pointers.at(number);
@@ -389,6 +392,7 @@ void Machine::State::perform(const SyncEntry& entry, CoordSystem& from) {
     default: break;  // L, R, C, D are refused by the compiler as synchronous targets
   }
   assignment_source.reset();
+  if (tracer && tracer->open()) tracer->performed(entry, from);
 }
 
 }  // namespace pmac::runtime

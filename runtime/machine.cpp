@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 
 #include "runtime/interpreter/fuse.h"
+#include "runtime/interruption.h"
 #include "runtime/state.h"
+#include "runtime/trace.h"
 
 namespace pmac::runtime {
 namespace {
 
 constexpr std::uint64_t kLoadBudget = 1'000'000'000;  // instructions of one load script
+constexpr std::uint64_t kLoadSlice = 1'000'000;       // between two looks at an interruption
 
 constexpr std::size_t kMostWarningsOfALine = 8;
 
@@ -49,6 +52,7 @@ Machine::State::State(MachineOptions o)
   for (int n = 0; n < bytecode::kMaxCoords; ++n) coords.push_back(std::make_unique<CoordSystem>(*this, n));
   online = std::make_unique<Runner>(RunnerKind::kOnline, 0, p.data(), coord(1).q.data());
   online->thread.coord = online->thread.motor = 1;
+  if (options.trace != TraceDetail::kNone) tracer = std::make_unique<Tracer>(*this);
 }
 
 Machine::State::~State() = default;
@@ -115,7 +119,8 @@ void Machine::State::run_load_script(ProgramHandle program) {
   thread.reset_jump_backs();
   RunResult result;
   for (std::uint64_t used = 0; used < kLoadBudget; used += std::max<std::uint64_t>(result.instructions, 1)) {
-    result = thread.run(*host, kLoadBudget - used, 0);
+    poll_interruption();
+    result = thread.run(*host, std::min(kLoadBudget - used, kLoadSlice), 0);
     instructions += result.instructions;
     if (result.stop == RunStop::kEnded || result.stop == RunStop::kFault) break;
   }
@@ -127,7 +132,8 @@ void Machine::State::run_load_script(ProgramHandle program) {
 
 void Machine::State::load(bytecode::Module module) {
   adopt_files(module, files);
-  fuse(module);
+  if (tracer) tracer->learn_names(module);
+  else fuse(module);
   const auto shared = std::make_shared<const bytecode::Module>(std::move(module));
   for (std::uint32_t index : shared->load_order) {
     loading = shared;

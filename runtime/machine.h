@@ -34,6 +34,9 @@ class Robot;
 
 namespace pmac::runtime {
 
+struct TraceRecord;
+enum class TraceDetail { kNone, kLines, kInstructions };
+
 /// Compiles a line of on-line commands, or says why not (the controller's error text). `name` appears as the file.
 using OnlineCompiler = std::function<std::variant<bytecode::Module, std::string>(std::string_view text, std::string_view name)>;
 
@@ -78,6 +81,7 @@ struct MachineObservers {
   std::function<void(const FaultRecord&)> fault;
   std::function<void(int coord, const motion::MotionCommand&)> motion_command;
   std::function<void(const JerkJoin&)> jerk_join;
+  std::function<void(const TraceRecord&)> trace;              // trace.h; with MachineOptions::trace
   std::function<void(double time_ms)> progress;               // now and then while running
 };
 
@@ -90,6 +94,8 @@ struct MachineOptions {
   /// A line of a source file, for list; empty where the owner has no source.
   std::function<std::optional<std::string>(const std::string& file, int line)> source_text;
   MachineObservers observers;
+  TraceDetail trace = TraceDetail::kNone;
+  std::uint64_t trace_limit = 1'000'000;                      // records; the run goes on without
   std::uint64_t max_instructions = 20'000'000'000;            // of a whole run
 };
 

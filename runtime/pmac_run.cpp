@@ -1,14 +1,17 @@
 // pmac-run: loads programs into a simulated controller, runs simulated time, and writes what came of it.
 #include <atomic>
 #include <chrono>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 
 #include <unistd.h>
 
 #include "compiler/compiler.h"
 #include "runtime/machine.h"
+#include "runtime/tool/acr_run.h"
 #include "runtime/tool/budget.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/drive_run.h"
@@ -21,6 +24,7 @@
 #include "runtime/tool/recorder.h"
 #include "runtime/tool/report.h"
 #include "runtime/tool/robots.h"
+#include "runtime/tool/trace_writer.h"
 
 namespace {
 
@@ -28,7 +32,11 @@ using namespace pmac;
 using namespace pmac::tool;
 
 std::atomic<bool> g_interrupted{false};
-void interrupt(int) { g_interrupted = true; }
+
+/// The first signal ends the run in an orderly way; another one, while that still writes, at once.
+void interrupt(int) {
+  if (g_interrupted.exchange(true)) _exit(kExitInterrupted);
+}
 
 void catch_signals() {
   std::signal(SIGINT, interrupt);
@@ -41,7 +49,7 @@ bool shows_progress(const RunOptions& options) { return !options.quiet && isatty
 runtime::MachineObservers observers(const RunOptions& options, Report& report, Budget& budget, runtime::Machine*& machine, Console& console,
                                     runtime::LimitCheck*& excuse, DriveRun& drive) {
   runtime::MachineObservers o;
-  const bool answers_to_stderr = options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
+  const bool answers_to_stderr = options.trace == "-" || options.json != JsonDetail::kNone || !options.emit.empty() || options.console;
   o.answer = [quiet = options.quiet, answers_to_stderr, &console](const std::string& text) {
     if (console.executing()) console.answer(text);
     else if (!quiet) std::fprintf(answers_to_stderr ? stderr : stdout, "%s\n", text.c_str());
@@ -83,9 +91,16 @@ runtime::RunLimits limits(const RunOptions& options, Budget& budget) {
   runtime::RunLimits l;
   if (options.until_s) l.until_ms = *options.until_s * 1000.0;
   l.max_ms = options.max_time_s * 1000.0;
-  l.interrupted = [] { return g_interrupted.load(); };
+  l.interrupted = [] { return g_interrupted.load(std::memory_order_relaxed) || std::ferror(stdout) != 0; };
   l.over_budget = [&budget] { return !budget.reached().empty(); };
   return l;
+}
+
+/// False: what went to standard output is not whole, which is said.
+bool flush_output() {
+  if (std::ferror(stdout) == 0 && std::fflush(stdout) == 0) return true;
+  std::fprintf(stderr, "pmac-run: cannot write standard output%s%s\n", errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : "");
+  return false;
 }
 
 /// Says why a run that did not come to its own end was ended.
@@ -97,6 +112,8 @@ void explain_end(const RunOptions& options, Budget& budget, const runtime::RunOu
   else if (outcome.end == runtime::RunEnd::kBudget)
     std::fprintf(stderr, "pmac-run: the limit of %llu instructions is reached (--max-instructions)\n",
                  static_cast<unsigned long long>(options.max_instructions));
+  else if (outcome.end == runtime::RunEnd::kInterrupted && !g_interrupted)
+    return;   // nobody reads standard output any more
   else if (outcome.end == runtime::RunEnd::kInterrupted)
     std::fprintf(stderr, "pmac-run: interrupted at %.6f s\n", outcome.time_ms / 1000.0);
   else
@@ -118,7 +135,8 @@ runtime::RunOutcome run_machine(const RunOptions& options, Budget& budget, runti
   if (!options.console) return machine.run(limits(options, budget));
   runtime::RunLimits rest = limits(options, budget);
   const runtime::RunOutcome outcome = console.run(machine, rest);
-  const bool over = outcome.end == runtime::RunEnd::kInterrupted || outcome.end == runtime::RunEnd::kBudget || outcome.end == runtime::RunEnd::kTimeLimit;
+  if (outcome.end == runtime::RunEnd::kInterrupted) return outcome;
+  const bool over = outcome.end == runtime::RunEnd::kBudget || outcome.end == runtime::RunEnd::kTimeLimit;
   if (!over) return machine.run(rest);
   rest.until_ms = machine.time_ms();  // closes what is open
   runtime::RunOutcome closed = machine.run(rest);
@@ -150,6 +168,12 @@ int run(const RunOptions& options) {
     return typed ? typed : lines(file, line);
   };
   machine_options.observers = observers(options, report, budget, place, console, excuse, drive);
+  TraceWriter trace(options, machine_options.source_text);
+  trace.attach(machine_options);
+  machine_options.observers.trace = [&trace, &place](const runtime::TraceRecord& record) {
+    const auto file = static_cast<std::size_t>(record.source.file);
+    trace.write(record, record.source.file >= 0 && file < place->files().size() ? place->files()[file] : "", place->place(record.source));
+  };
   Emitter emitter(options.emit);
   budget.add_output([&emitter] { return emitter.printed(); });
   emitter.attach(machine_options.observers);
@@ -169,6 +193,7 @@ int run(const RunOptions& options) {
   if (drive.active()) machine.add_sink(&drive);
   emitter.attach(machine, recorder, drive);
 
+  if (!options.trace.empty()) catch_signals();   // its file is open while files load
   if (const int code = set_robots(options, machine); code != kExitOk) return code;
   if (const int code = load_files(options, session, machine); code != kExitOk) return code;
   for (const std::string& text : options.commands) machine.command(text, "-e");
@@ -188,9 +213,10 @@ int run(const RunOptions& options) {
   const bool idle_from_start = outcome.end == runtime::RunEnd::kIdle && report.move_count() == 0 && outcome.time_ms < 11;
   if (idle_from_start && options.commands.empty() && options.timed_commands.empty() && !options.console && !options.quiet && exit_code(machine, report, outcome) == kExitOk)
     std::fprintf(stderr, "pmac-run: loaded, and nothing was started; use -e '&1 b1r' to run program 1 in coordinate system 1\n");
-  const bool written = outputs.finish();
+  const bool trace_written = trace.finish();
+  const bool written = outputs.finish() && trace_written;
   const int drive_code = drive.finish();
-  std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() ? stdout : stderr;
+  std::FILE* out = options.json == JsonDetail::kNone && options.emit.empty() && options.trace != "-" ? stdout : stderr;
   if (options.stats) {
     std::fputs(report.text(machine, outcome, statistics, wall_s).c_str(), out);
     std::fputs(report.move_log(machine).c_str(), out);
@@ -203,10 +229,7 @@ int run(const RunOptions& options) {
   report.add_drive(drive);
   if (options.check_limits) std::fputs(limit_text(machine, limit_rows).c_str(), out);
   if (options.json != JsonDetail::kNone) std::fputs(report.json(machine, outcome, statistics, options.json).c_str(), stdout);
-  if (std::fflush(stdout) != 0 || !written) {
-    if (written) std::perror("pmac-run: standard output");
-    return kExitUsage;
-  }
+  if (!flush_output() || !written) return kExitUsage;
   const int code = exit_code(machine, report, outcome);
   if (code != kExitOk) return code;
   return limits_kept ? drive_code : kExitFault;
@@ -229,7 +252,14 @@ int main(int argc, char** argv) {
       return kExitUsage;
     }
     std::signal(SIGPIPE, SIG_IGN);
+    if (is_card_run(options)) {
+      catch_signals();
+      return run_cards(options, [] { return g_interrupted.load(); });
+    }
     return run(options);
+  } catch (const runtime::OutputError& e) {
+    std::fprintf(stderr, "pmac-run: %s\n", e.what());
+    return kExitUsage;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "pmac-run: internal error: %s\n", e.what());
     return kExitInternal;

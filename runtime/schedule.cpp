@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/interruption.h"
 #include "runtime/motor_faults.h"
 #include "runtime/motor_moves.h"
 #include "runtime/servo/servo_cycle.h"
@@ -34,6 +35,28 @@ void shorten_rows(std::vector<double>& rows, std::size_t count, std::size_t wide
 }
 
 bool is_foreground(const Machine::State& s, int plc) { return plc <= s.elements.get(ElementId::kSysMaxRtPlc); }
+
+/// Simulated time until something of RunEnd.
+RunEnd run_events(Machine::State& s, const RunLimits& limits) {
+  const double stop_ms = std::min(limits.until_ms.value_or(limits.max_ms), limits.max_ms);
+  double next_progress_ms = kProgressMs;
+  s.sample_to(s.now_ms);
+  for (std::uint64_t event = 0;; ++event) {
+    s.service(s.now_ms);
+    s.update_idle(s.now_ms);
+    const double idle_end_ms = s.is_idle && !limits.until_ms ? s.idle_since_ms + limits.idle_ms : kNever;
+    if (s.now_ms >= idle_end_ms) return RunEnd::kIdle;
+    if (s.now_ms >= stop_ms) return limits.until_ms && *limits.until_ms <= limits.max_ms ? RunEnd::kUntil : RunEnd::kTimeLimit;
+    if (s.instructions > s.options.max_instructions) return RunEnd::kBudget;
+    if (interruption_wanted()) return RunEnd::kInterrupted;
+    if (limits.over_budget && event % 256 == 0 && limits.over_budget()) return RunEnd::kBudget;
+    if (s.now_ms >= next_progress_ms) {
+      if (s.options.observers.progress) s.options.observers.progress(s.now_ms);
+      next_progress_ms = s.now_ms + kProgressMs;
+    }
+    s.now_ms = s.sample_to(s.next_event_ms(std::min({stop_ms, idle_end_ms, next_progress_ms})));
+  }
+}
 
 }  // namespace
 
@@ -143,7 +166,7 @@ double Machine::State::sample_to(double time_ms) {
     tick += kept;
     now_ms = std::max(now_ms, tick_ms(tick));
     deliver(block);
-    if (!trips.empty()) return now_ms;
+    if (!trips.empty() || interruption_wanted()) return now_ms;
   }
   return time_ms;
 }
@@ -200,34 +223,25 @@ void Machine::State::service(double time_ms) {
 }
 
 RunOutcome Machine::State::run(const RunLimits& limits) {
-  const double stop_ms = std::min(limits.until_ms.value_or(limits.max_ms), limits.max_ms);
-  double next_progress_ms = kProgressMs;
   RunOutcome outcome;
-  sample_to(now_ms);
-  for (std::uint64_t event = 0;; ++event) {
-    service(now_ms);
-    update_idle(now_ms);
-    const double idle_end_ms = is_idle && !limits.until_ms ? idle_since_ms + limits.idle_ms : kNever;
-    if (now_ms >= idle_end_ms) { outcome.end = RunEnd::kIdle; break; }
-    if (now_ms >= stop_ms) { outcome.end = limits.until_ms && *limits.until_ms <= limits.max_ms ? RunEnd::kUntil : RunEnd::kTimeLimit; break; }
-    if (instructions > options.max_instructions) { outcome.end = RunEnd::kBudget; break; }
-    if (limits.interrupted && event % 256 == 0 && limits.interrupted()) { outcome.end = RunEnd::kInterrupted; break; }
-    if (limits.over_budget && event % 256 == 0 && limits.over_budget()) { outcome.end = RunEnd::kBudget; break; }
-    if (now_ms >= next_progress_ms) {
-      if (options.observers.progress) options.observers.progress(now_ms);
-      next_progress_ms = now_ms + kProgressMs;
-    }
-    const double next = next_event_ms(std::min({stop_ms, idle_end_ms, next_progress_ms}));
-    now_ms = sample_to(next);
+  bool broken_off = false;   // in the middle of planning: what has been sampled is all there is
+  try {
+    const InterruptionScope scope(limits.interrupted);
+    outcome.end = run_events(*this, limits);
+  } catch (const Interrupted&) {
+    outcome.end = RunEnd::kInterrupted;
+    broken_off = true;
   }
   outcome.time_ms = now_ms;
+  outcome.ticks = tick;
+  outcome.instructions = instructions;
   if (limits.more_follows) return outcome;
   for (const auto& c : coords)
     if (c->program_active()) outcome.running.push_back(fmt::format("prog {} at {}", c->runner().thread.top_program().program->number, place(c->line_at(now_ms))));
+  if (broken_off) return outcome;
   for (const auto& c : coords) c->report_unfinished(now_ms, true);
   sample_to(tick_ms(tick) >= now_ms ? now_ms : tick_ms(tick + 1));
   outcome.ticks = tick;
-  outcome.instructions = instructions;
   return outcome;
 }
 

@@ -24,6 +24,8 @@
 
 namespace pmac::runtime {
 
+class Tracer;
+
 /// A PLC program and its scan state.
 struct Plc {
   std::unique_ptr<Runner> runner;
@@ -74,6 +76,7 @@ struct Machine::State {
   std::array<Plc, bytecode::kMaxPlcs> plcs;
   std::unique_ptr<Runner> online;                    // the command thread: files, -e, --at, console
   std::unique_ptr<Host> host;
+  std::unique_ptr<Tracer> tracer;                    // absent: nobody wants a trace
   std::map<std::uint32_t, ProgramHandle> progs, subprogs, plc_programs;
   std::vector<std::string> files;                    // of all modules
   std::shared_ptr<const bytecode::Module> loading;   // module whose load script is executing

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/letters.h"
@@ -51,6 +52,7 @@ class OperandText {
   std::string call() const;
   std::string word() const;
   std::string control() const;
+  std::string card() const;
   std::string letters() const;
 
   const Module& module_;
@@ -121,6 +123,11 @@ std::string OperandText::control() const {
   return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
 }
 
+std::string OperandText::card() const {
+  const std::string verb(card_verb_info(static_cast<CardVerb>(in_.a)).text);
+  return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
+}
+
 std::string OperandText::letters() const {
   return entry(module_.constants, [](double mask) {
     std::string names;
@@ -167,6 +174,7 @@ std::string OperandText::text() const {
       return std::string(motion_parameter_name(static_cast<MotionParameter>(in_.b()))) + ", " + reg(in_.a);
     case OperandFormat::kRegWord: return word();
     case OperandFormat::kControl: return control();
+    case OperandFormat::kCard: return card();
     case OperandFormat::kString: return string();
     case OperandFormat::kPortString: return std::to_string(in_.a) + ", " + string();
     case OperandFormat::kRegString: return a_and(string());
@@ -258,10 +266,7 @@ void add_table(std::string& out, const char* title, const std::vector<T>& table,
 }
 
 void add_instruction(std::string& out, const Module& module, const Program& program, std::uint32_t pc) {
-  const Instruction& in = program.code[pc];
-  const std::string operands = OperandText(module, program, in).text();
-  std::string line = right_aligned(std::to_string(pc), 6) + "  ";
-  line += operands.empty() ? std::string(opcode_info(in.op).text) : padded(std::string(opcode_info(in.op).text), 14) + operands;
+  std::string line = right_aligned(std::to_string(pc), 6) + "  " + instruction_text(module, program, program.code[pc]);
   const SourceLine source = source_of(program, pc);
   const bool starts_line = pc == 0 || !(source == source_of(program, pc - 1));
   if (starts_line && source.file >= 0) line = padded(line, kSourceColumn) + "  ; " + to_string(module, source);
@@ -303,6 +308,12 @@ void add_program(std::string& out, const Module& module, const Program& program)
 }
 
 }  // namespace
+
+std::string instruction_text(const Module& module, const Program& program, const Instruction& in) {
+  const std::string operands = OperandText(module, program, in).text();
+  const std::string name(opcode_info(in.op).text);
+  return operands.empty() ? name : padded(name, 14) + operands;
+}
 
 std::string disassemble(const Module& module) {
   std::string out;

@@ -25,6 +25,9 @@ std::string element_text(const Program& program, const ElementRef& ref);
 /// "prog 5", "subprog 100000 (Timer)", "forward 1".
 std::string program_title(const Program& program);
 
+/// One instruction of a program: name and operands, "add           t0, L3, t1".
+std::string instruction_text(const Module& module, const Program& program, const Instruction& instruction);
+
 /// Text in double quotes with control characters escaped.
 std::string quoted(const std::string& text);
 

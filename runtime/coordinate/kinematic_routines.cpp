@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/interruption.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -45,6 +46,7 @@ double outgoing_or_nan(Thread& thread, const bytecode::Program& program, int n) 
 
 /// From its top to its end, with what has been put into the thread. Ldata.GoBack acts at once where the routine raises it.
 std::string CoordSystem::run_routine(Caller caller) {
+  poll_interruption();
   Thread& thread = kinematics_.thread;
   kinematics_.for_query = caller == Caller::kQuery;
   kinematics_.aborted = false;

@@ -1,6 +1,8 @@
 // The dispatch loop. Code has been verified, so registers, tables and targets are used without looking. With GCC and Clang
 // every instruction ends in its own indirect jump (labels as values), elsewhere the same bodies are the cases of a switch.
 //
+// The loop exists twice: once plain, once telling a watcher of every instruction.
+//
 // Instructions are counted where control leaves a straight run of them: the run began at `run_start`, so a jump taken at pc
 // has executed pc + 1 - run_start instructions. The budget is looked at on backward jumps, calls and returns.
 #include "runtime/interpreter/core.h"
@@ -31,9 +33,20 @@ constexpr unsigned kLetterF = 6;
 RunResult InterpreterCore::run() {
   if (!thread_.active()) return {};
   const std::int64_t before = budget_;
-  dispatch();
+  if (watcher_) {
+    dispatch<true>();
+    watcher_->after_run(thread_, thread_.active() ? std::span<const double>(registers(), register_count()) : std::span<const double>());
+  } else {
+    dispatch<false>();
+  }
   result_.instructions = static_cast<std::uint64_t>(before - budget_);
   return std::move(result_);
+}
+
+/// Where run_line() has put a jump to itself, the line has not begun.
+void InterpreterCore::watch(const Instruction& in, std::uint32_t pc) {
+  const bool waits_here = thread_.one_line_ && in.op == Opcode::kLoop && in.imm == static_cast<std::int32_t>(pc);
+  if (!waits_here) watcher_->before(thread_, pc, {registers(), register_count()});
 }
 
 InterpreterCore::Next InterpreterCore::end_program() {
@@ -147,9 +160,14 @@ InterpreterCore::Next InterpreterCore::after(Flow flow) {
     NEXT();                      \
   }
 #define SPAN std::span<const double>(r, register_count())
+#define WATCH()                                                             \
+  do {                                                                      \
+    if constexpr (kWatched) watch(*pc, static_cast<std::uint32_t>(pc - code)); \
+  } while (false)
 #define MOTION(Name) OP(Name) : HOST(host_.motion(thread_, *pc, SPAN))
 #define ONLINE(Name) OP(Name) : HOST(host_.online(thread_, *thread_.program_.module, *pc, SPAN))
 
+template <bool kWatched>
 void InterpreterCore::dispatch() {
   const Instruction* code = nullptr;
   const Instruction* pc = nullptr;
@@ -178,7 +196,11 @@ void InterpreterCore::dispatch() {
   };
 #define OP(Name) body_##Name
 #define FUSED_OP(Name) body_##Name
-#define DISPATCH() goto* kBodies[static_cast<std::size_t>(pc->op)]
+#define DISPATCH()                                                \
+  do {                                                            \
+    WATCH();                                                      \
+    goto* kBodies[static_cast<std::size_t>(pc->op)];              \
+  } while (false)
 #define NEXT()  \
   do {          \
     ++pc;       \
@@ -195,6 +217,7 @@ void InterpreterCore::dispatch() {
     DISPATCH(); \
   } while (false)
 dispatch_next:
+  WATCH();
   switch (static_cast<unsigned>(pc->op)) {
 #endif
 
@@ -331,6 +354,8 @@ dispatch_next:
   MOTION(StepBegin);
   MOTION(StepEnd);
   OP(Control) : HOST(host_.control(thread_, static_cast<bytecode::ControlVerb>(pc->a), {r + pc->b(), pc->c()}));
+  OP(Card) : HOST(host_.card(thread_, static_cast<bytecode::CardVerb>(pc->a), {r + pc->b(), pc->c()}));
+  OP(RelayTest) : SAVE(); r[pc->a] = host_.relay(thread_, RB); LEAVE_UNLESS(!host_failed());
   OP(Command) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
   OP(Send) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
   ONLINE(AddressCoord);

@@ -28,8 +28,10 @@ class InterpreterCore {
   /// What the dispatch loop does after a member has worked.
   enum class Next { kContinue, kEnter, kLeave };
 
-  // core.cpp
+  // core.cpp. kWatched: the watcher hears of every instruction.
+  template <bool kWatched>
   void dispatch();
+  void watch(const Instruction& in, std::uint32_t pc);
   const bytecode::Program& program() const { return *thread_.program_.program; }
   double* registers() const { return thread_.stack_.data() + thread_.base_; }
   std::size_t register_count() const { return program().frame_size + program().outgoing_count; }
@@ -126,6 +128,7 @@ class InterpreterCore {
 
   Thread& thread_;
   Host& host_;
+  InstructionWatcher* const watcher_ = host_.watcher();
   std::int64_t budget_;
   std::int64_t jump_back_limit_;
   RunResult result_;

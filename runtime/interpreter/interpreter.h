@@ -40,10 +40,22 @@ enum class Flow {
   kFault,      // host_fault() of the thread says why
 };
 
+/// Looks on while programs execute (--trace). Runs of threads nest: a move line may run a kinematic routine.
+class InstructionWatcher {
+ public:
+  virtual ~InstructionWatcher() = default;
+  /// Before an instruction of thread.program() executes. registers: the frame with its outgoing arguments.
+  virtual void before(const Thread& thread, std::uint32_t pc, std::span<const double> registers) = 0;
+  /// After the last one of a run. registers: empty where the program has ended.
+  virtual void after_run(const Thread& thread, std::span<const double> registers) = 0;
+};
+
 /// Everything that a program reaches outside its own registers.
 class Host {
  public:
   virtual ~Host() = default;
+  /// Who looks on, or nullptr; asked once a run. Programs that are watched must not be fused (fuse.h).
+  virtual InstructionWatcher* watcher() { return nullptr; }
   virtual double read_m(Thread&, int number) = 0;
   virtual void write_m(Thread&, int number, double value) = 0;
   virtual double read_i(Thread&, int number) = 0;
@@ -61,6 +73,10 @@ class Host {
   virtual ProgramHandle find_subprogram(std::uint32_t number) = 0;
   virtual Flow command(Thread&, std::string_view text) = 0;
   virtual Flow send(Thread&, int port, std::string_view text) = 0;
+  /// What a program of an ACR1000 asks of its card. A host that is no card refuses it with a fault.
+  virtual Flow card(Thread&, bytecode::CardVerb, std::span<const double> arguments);
+  /// 1 where the relay of a card is set, else 0; as above.
+  virtual double relay(Thread&, double number);
   virtual double random(double range) = 0;
   virtual void seed_random(double seed) = 0;
   /// AddressCoord .. Report of load scripts. registers as for motion().
@@ -127,6 +143,11 @@ class Thread {
   bool ends_scans = false;// a PLC program: ScanLoop ends the scan
   void* context = nullptr;// for the host's use
 
+  /// Routines that have been called and have not returned.
+  std::size_t call_depth() const { return frames_.size(); }
+  /// Number in its buffer of the instruction being executed, or about to be.
+  std::uint32_t pc() const { return pc_; }
+
   int executing_coord() const { return own_coord >= 0 ? own_coord : coord; }
 
   void set_host_fault(Fault fault) { host_fault_ = std::move(fault); }
@@ -143,6 +164,7 @@ class Thread {
   std::uint32_t pc_ = 0;
   bool came_to_end_ = false;
   std::int64_t jump_backs_ = 0;
+  bool one_line_ = false;               // run_line() is at work
   std::optional<Fault> host_fault_;
   std::vector<double> format_values_;   // of the next text with a format
 

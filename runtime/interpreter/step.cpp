@@ -38,7 +38,9 @@ RunResult Thread::run_line(Host& host, std::uint64_t instruction_budget) {
   for (bytecode::Program& program : copy->programs) stop_at_other_lines(program, source());
   replace_module(module, copy);
   reset_jump_backs();
+  one_line_ = true;
   RunResult result = run(host, instruction_budget, 1);
+  one_line_ = false;
   replace_module(copy, module);
   return result;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/interruption.h"
+
 namespace pmac::motion {
 namespace {
 
@@ -135,6 +137,7 @@ void Lookahead::append(PreparedSegment prepared) {
 }
 
 void Lookahead::append_part(PreparedSegment prepared) {
+  runtime::poll_interruption();
   Interval next{std::move(prepared.segment), prepared.accel_share, {}, prepared.speed_ratio * prepared.speed_ratio};
   next.limits = rate_limits(next.segment, limits_, next.accel_share);
   next.start_bound = std::min(next.limits.max_rate2, prepared.max_start_rate * prepared.max_start_rate);
@@ -178,6 +181,7 @@ void Lookahead::backward(double end_beta) {
 }
 
 void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
+  runtime::poll_interruption();
   if (at_start_) rate2_ = intervals_.front().beta;
   at_start_ = false;
   Interval interval = std::move(intervals_.front());

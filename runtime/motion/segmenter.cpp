@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/interruption.h"
+
 namespace pmac::motion {
 namespace {
 
@@ -136,6 +138,7 @@ void Segmenter::add_turn_nodes(const PathPiece& piece, double end_ms) {
 }
 
 std::optional<Fault> Segmenter::add_node(const PathPiece& piece, double local_ms, std::vector<Segment>& out) {
+  runtime::poll_interruption();
   MotorNode node;
   node.time_ms = local_ms == piece.duration_ms ? piece.start_ms + piece.duration_ms : piece.start_ms + local_ms;
   node.command = piece.command;

@@ -1,6 +1,7 @@
 #include "runtime/tool/emit.h"
 
 #include <cstdio>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,7 +34,7 @@ void Emitter::attach(runtime::Machine& machine, Recorder& recorder, DriveRun& dr
     recorder.add_sink({[this](const std::vector<std::string>& names) { print(fmt::format("{}", fmt::join(names, " "))); },
                        [this, &recorder](std::span<const double> rows) {
                          const std::size_t width = recorder.width();
-                         for (std::size_t i = 0; i < rows.size(); i += width) print(fmt::format("{}", fmt::join(rows.subspan(i, width), " ")));
+                         for (std::size_t i = 0; i < rows.size() && std::ferror(stdout) == 0; i += width) print(fmt::format("{}", fmt::join(rows.subspan(i, width), " ")));
                        }});
   }
   for (int coord = 0; coord < bytecode::kMaxCoords; ++coord) {

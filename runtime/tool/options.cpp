@@ -94,6 +94,9 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--gather", o.gather, "write what the program gathers to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_option("--plot", o.plots, "draw path and motion to a .svg, .png or .html file")->type_name("FILE")->allow_extra_args(false);
   app.add_option("--emit", o.emit, "print every record of a stage")->type_name("STAGE")->check(CLI::IsMember({"commands", "path", "segments", "lookahead", "servo", "frames"}));
+  app.add_flag("--trace{-}", o.trace, "print every executed line with its time and what it assigned; =FILE writes it to a file");
+  app.add_flag("--trace-instructions", o.trace_instructions, "the trace shows every instruction besides");
+  app.add_option("--trace-limit", o.trace_limit, "the trace ends after so many records; the run goes on")->type_name("N")->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}))->capture_default_str();
   app.add_flag("--stats", o.stats, "print times, speeds and accelerations at the end");
   app.add_flag("--check-limits", o.check_limits, "hold every servo sample to the motors' limits; exit 3 where one is exceeded");
   app.add_flag("--json{moves}", json, "print one JSON object at the end; =summary leaves out moves and outputs");
@@ -101,6 +104,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
   app.add_flag("--limit-jerk", o.limit_jerk, "buffered lookahead keeps Motor[].InvJmax as well");
   add_kinematics_options(app, o);
+  add_card_options(app, o.cards);
   add_drive_options(app, o);
   app.add_flag("--console", o.console, "read on-line commands from standard input and answer each line");
   app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();
@@ -121,6 +125,8 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   const bool lists = (o.robots.size() == 1 && o.robots[0] == "list") || o.drive == "list";
   if (o.files.empty() && !o.console && !lists) return usage("FILE is required");
   if (o.kin_check.enabled && o.console) return usage("--kin-check runs nothing, and no --console");
+  if (o.trace_instructions && o.trace.empty()) return usage("--trace-instructions goes with --trace");
+  if (o.trace == "-" && (!o.emit.empty() || !json.empty())) return usage("--trace shares standard output with --json or --emit; name a file: --trace=FILE");
   if (o.realtime && !o.console) return usage("--realtime goes with --console");
   if (const std::string bad = drive_misuse(o); !bad.empty()) return usage(bad);
   if (at.size() % 2 != 0) return usage("--at needs a time and a command");

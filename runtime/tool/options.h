@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/motion/types.h"
+#include "runtime/tool/acr_options.h"
 
 namespace pmac::tool {
 
@@ -36,6 +37,9 @@ struct RunOptions {
   std::uint64_t max_memory_mib = 8192;
   std::uint64_t max_output_mib = 262'144;                     // of all files and stage records together
   std::string record, gather;
+  std::string trace;                                          // a file, or - for standard output
+  bool trace_instructions = false;
+  std::uint64_t trace_limit = 1'000'000;                      // records
   std::vector<std::string> plots;
   std::string emit;
   bool stats = false, check_limits = false, quiet = false;
@@ -50,6 +54,7 @@ struct RunOptions {
   std::string drive;                                          // --drive NAME, and NAME=VALUE after the colon
   std::vector<std::pair<std::string, std::string>> drive_settings;
   std::string drive_record;                                   // table of what the simulated drive did
+  CardRunOptions cards;                                       // of ACR1000 runs
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,

@@ -19,6 +19,7 @@ std::string unknown_ending(const RunOptions& options) {
 
 std::string clashing_file(const RunOptions& options) {
   std::vector<std::string> outputs{options.record, options.gather, options.drive_record};
+  if (options.trace != "-") outputs.push_back(options.trace);
   outputs.insert(outputs.end(), options.plots.begin(), options.plots.end());
   const auto same = [](const std::string& a, const std::string& b) {
     std::error_code ignored;

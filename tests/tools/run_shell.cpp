@@ -42,6 +42,12 @@ ToolResult Workspace::run(const std::string& tool, const std::string& arguments)
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path(".out")), slurp(path(".err"))};
 }
 
+ToolResult Workspace::shell(const std::string& command) const {
+  write(".command", "PATH='" PMAC_BINARY_DIR "/bin':$PATH\n" + command + "\n");
+  const int status = std::system(("cd '" + folder_.string() + "' && timeout 60 bash .command </dev/null >.out 2>.err").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path(".out")), slurp(path(".err"))};
+}
+
 std::string program(const std::string& name) { return std::string("'") + PMAC_SOURCE_DIR + "/programs/" + name + "'"; }
 
 }  // namespace pmac::test

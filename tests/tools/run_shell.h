@@ -20,6 +20,8 @@ class Workspace {
   bool has(const std::string& name) const { return std::filesystem::exists(path(name)); }
   /// arguments as a shell reads them; the working folder is this one. `tool`: pmacc or pmac-run.
   ToolResult run(const std::string& tool, const std::string& arguments) const;
+  /// A command line of bash; the tools are on its path.
+  ToolResult shell(const std::string& command) const;
 
  private:
   std::filesystem::path folder_;
