@@ -1,4 +1,5 @@
 #include "runtime/drives/drive.h"
+#include "runtime/drives/mcx514/mcx514_drive.h"
 
 #include "runtime/drives/silverlode/silverlode_drive.h"
 

@@ -15,6 +15,8 @@ constexpr double kLongestStep_ms = 5, kStepsPerRamp = 8, kStepsPerStretch = 44;
 /// Cells in which the acceleration changes by this part of its limit are divided in so many, if they take so many times the finest step.
 constexpr double kMuchChange = 0.12, kRefineFrom = 1.5;
 constexpr int kParts = 3, kRefinements = 4;
+constexpr double kRoughGap = 0.02, kGap = 1e-3;   // of the time, from the fastest profile
+constexpr double kStops = 3;              // so many times as long as a stop takes is what lies ahead felt
 constexpr double kRestSteps = 2;          // the cell from or to rest takes so many steps
 constexpr double kFirstGuess = 0.6;       // of the estimated square of the speed
 constexpr double kStep = 1e-6;            // of a limit: smaller steps of acceleration between cells are none
@@ -54,6 +56,18 @@ CellMotion JerkPlan::advance() {
   return motion_through(cell.to_mu - cell.from_mu, x0, y0, x1, y1);
 }
 
+void JerkPlan::take_felt() {
+  double speed2 = 0, inv_accel = 0, inv_jerk = 0;
+  for (std::size_t i = next_; i + 1 < profile_.nodes(); ++i) {
+    const PathCell& cell = path_.cell(cells_[i].cell);
+    speed2 = std::max(speed2, profile_.speed2[i]);
+    inv_accel = std::max(inv_accel, cell.inv_accel_ms2_mu);
+    inv_jerk = std::max(inv_jerk, cell.inv_jerk_ms3_mu);
+  }
+  const double speed = std::sqrt(speed2);
+  felt_ms_ = kStops * (speed * inv_accel + (inv_accel > 0 ? inv_jerk / inv_accel : 2 * std::sqrt(speed * inv_jerk)));
+}
+
 void JerkPlan::renew() {
   first_ = state_.cell;
   if (state_.offset_mu >= path_.cell(first_).length_mu) state_ = {++first_, 0, state_.speed2, state_.slope};
@@ -63,16 +77,22 @@ void JerkPlan::renew() {
   new_cells_.assign(cells_.begin() + static_cast<std::ptrdiff_t>(next_), cells_.begin() + static_cast<std::ptrdiff_t>(next_ + kept));
   divide(kLongestStep_ms, kept, end);
   guess(kept);
-  bool solved = false;
-  for (int i = 0; i <= kRefinements; ++i) {
-    make_problem();
-    solved = solver_.solve(problem_, new_profile_);
-    if (!solved || i == kRefinements || !refine()) break;
-  }
+  const bool solved = solve_refined();
   if (!accept(solved)) return;
   std::swap(cells_, new_cells_);
   std::swap(profile_, new_profile_);
   next_ = 0;
+  take_felt();
+}
+
+/// Roughly while cells are being divided.
+bool JerkPlan::solve_refined() {
+  for (int i = 0; i <= kRefinements; ++i) {
+    make_problem();
+    if (!solver_.solve(problem_, kRoughGap, new_profile_)) return false;
+    if (i == kRefinements || !refine()) break;
+  }
+  return solver_.go_on(kGap, new_profile_);
 }
 
 /// Behind the last cell before the next rest.
@@ -205,9 +225,10 @@ bool JerkPlan::refine() {
     part_speed2_.push_back(new_profile_.speed2[i + 1]);
   }
   const bool any = parts_.size() > new_cells_.size();
+  if (!any) return false;
   std::swap(parts_, new_cells_);
   std::swap(part_speed2_, guess_speed2_);
-  return any;
+  return true;
 }
 
 bool JerkPlan::is_coarse(std::size_t i, double finest_ms) const {

@@ -43,7 +43,8 @@ void write_record(const drives::Execution& execution, const std::string& file) {
 
 /// Path and error of the first two axes; of one axis the error alone.
 void draw_pictures(const drives::Execution& execution, const RunOptions& options) {
-  if (execution.times_s.size() < 2) {
+  if (options.plots.empty()) return;
+  if (execution.times_s.size() < 2 || execution.error_counts.size() != execution.times_s.size()) {
     std::fprintf(stderr, "pmac-run: the simulated drive did not move, there is no picture\n");
     return;
   }
