@@ -1,6 +1,8 @@
 #include "runtime/drives/drive.h"
 #include "runtime/drives/mcx514/mcx514_drive.h"
 
+#include "runtime/drives/silverlode/silverlode_drive.h"
+
 namespace pmac::drives {
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/gather/error_plot.h"
 #include "runtime/gather/table_writer.h"
 #include "runtime/motion/path.h"
 
@@ -38,6 +39,26 @@ void write_record(const drives::Execution& execution, const std::string& file) {
     writer->append(row);
   }
   writer->finish();
+}
+
+/// Path and error of the first two axes; of one axis the error alone.
+void draw_pictures(const drives::Execution& execution, const RunOptions& options) {
+  if (options.plots.empty()) return;
+  if (execution.times_s.size() < 2 || execution.error_counts.size() != execution.times_s.size()) {
+    std::fprintf(stderr, "pmac-run: the simulated drive did not move, there is no picture\n");
+    return;
+  }
+  runtime::ErrorPlotData data;
+  data.title = "simulated drive: " + options.drive;
+  data.error_name = "distance from the path";
+  data.time_s = execution.times_s;
+  data.error = execution.error_counts;
+  if (execution.axes.size() >= 2) {
+    data.x_name = execution.axes[0], data.y_name = execution.axes[1];
+    data.x = execution.position_counts[0], data.y = execution.position_counts[1];
+    data.commanded_x = execution.commanded_counts[0], data.commanded_y = execution.commanded_counts[1];
+  }
+  for (const std::string& file : options.plots) runtime::draw(data, *runtime::plot_format_of(file), file);
 }
 
 }  // namespace
@@ -85,6 +106,7 @@ int DriveRun::finish() {
   report_events();
   try {
     if (!options_.drive_record.empty()) write_record(*execution_, options_.drive_record);
+    draw_pictures(*execution_, options_);
   } catch (const runtime::OutputError& e) {
     std::fprintf(stderr, "pmac-run: %s\n", e.what());
     return kExitUsage;

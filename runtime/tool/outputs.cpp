@@ -38,7 +38,7 @@ std::string clashing_file(const RunOptions& options) {
 Outputs::Outputs(const RunOptions& options, runtime::Machine& machine, Recorder& recorder) : options_(options) {
   if (!options.record.empty()) record(recorder);
   if (!options.gather.empty()) gather(machine);
-  if (!options.plots.empty()) keep_for_plots(recorder);
+  if (!options.plots.empty() && options.drive.empty()) keep_for_plots(recorder);  // with --drive its own picture
 }
 
 void Outputs::fail(const std::string& message) {
@@ -103,7 +103,7 @@ bool Outputs::finish() {
     if (gather_ && !failed_) gather_->finish();
     if (!options_.gather.empty() && !gather_ && !failed_)
       std::fprintf(stderr, "pmac-run: nothing was gathered, %s is not written; set Gather.Enable = 2 in the program\n", options_.gather.c_str());
-    if (!options_.plots.empty() && !failed_) draw();
+    if (!options_.plots.empty() && options_.drive.empty() && !failed_) draw();
   } catch (const std::exception& e) {
     fail(e.what());
   }

@@ -1,6 +1,7 @@
 #include "runtime/tool/report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -54,7 +55,10 @@ ordered_json drive_json(const DriveRun& drive) {
   if (!drive.execution()) return {{"refused", drive.refusal()}};
   const drives::Execution& execution = *drive.execution();
   ordered_json j{{"time_s", execution.time_s}, {"axes", execution.axes}};
-  for (const drives::Figure& figure : execution.figures) j[figure.name] = figure.value;
+  for (const drives::Figure& figure : execution.figures) {
+    const bool is_whole = figure.value == std::floor(figure.value) && std::abs(figure.value) < 1e15;
+    j[figure.name] = is_whole ? ordered_json(static_cast<std::int64_t>(figure.value)) : ordered_json(figure.value);
+  }
   j["events"] = ordered_json::array();
   for (const drives::DriveEvent& event : execution.events)
     j["events"].push_back({{"time_s", event.time_s}, {"error", event.is_error}, {"text", event.text}});

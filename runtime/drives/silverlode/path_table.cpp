@@ -22,6 +22,8 @@ class Planner {
   Planner(const Sheet& sheet, const PathTable& path);
 
   std::optional<std::string> plan();
+  /// The given ramps, and slices that they fill.
+  void adopt(const std::vector<double>& ramp_ticks);
 
   std::vector<double> least_slice, slice, ramp;
   std::vector<TickLimits> limits;
@@ -36,9 +38,7 @@ class Planner {
   bool grow(std::size_t i, std::size_t neighbour);
   double next_feasible(std::size_t axis, std::size_t i, std::size_t neighbour) const;
   void set_ramps();
-  void shorten_wanted_ramps();
   bool make_room_for_ramps();
-  double even_least_ramp(std::size_t i) const { return 2 * std::ceil(least_ramp(i) / 2 * (1 - kSlack)); }
 
   const Sheet& sheet_;
   const PathTable& path_;
@@ -46,12 +46,10 @@ class Planner {
 };
 
 Planner::Planner(const Sheet& sheet, const PathTable& path) : sheet_(sheet), path_(path), n_(sheet.segments()) {
-  // What entries make up for needs a little room below the limit.
-  const double share = path.makes_up ? 0.999 : 1.0;
   for (const AxisLimits& limit : path.limits)
-    limits.push_back({counts_s_from_rpm(limit.max_speed_rpm) * kTick_s * share, counts_s_from_rpm(limit.max_accel_rpm_s) * kTick_s * kTick_s * share});
+    limits.push_back({counts_s_from_rpm(limit.max_speed_rpm) * kTick_s, counts_s_from_rpm(limit.max_accel_rpm_s) * kTick_s * kTick_s});
   least_slice.assign(n_ + 2, 0.0);
-  for (std::size_t i = 1; i <= n_; ++i) {
+  for (std::size_t i = 1; i <= n_ && path.ramp_ticks.empty(); ++i) {
     least_slice[i] = std::max({path.slice_ticks[i], path.least_slice_ticks, 1.0});
     for (std::size_t a = 0; a < limits.size(); ++a)
       least_slice[i] = std::max(least_slice[i], std::ceil(std::abs(sheet.axis[a].delta[i]) / limits[a].speed * (1 - kSlack)));
@@ -104,25 +102,8 @@ double Planner::least_ramp(std::size_t i) const {
   return ticks;
 }
 
-/// The wanted ramps, in proportion where a slice had to grow, and never less than the limits need.
 void Planner::set_ramps() {
-  for (std::size_t i = 1; i <= n_ + 1; ++i) {
-    ramp[i] = even_least_ramp(i);
-    if (path_.ramp_ticks.empty()) continue;
-    double stretch = 1e300;
-    if (i <= n_) stretch = std::min(stretch, slice[i] / path_.slice_ticks[i]);
-    if (i > 1) stretch = std::min(stretch, slice[i - 1] / path_.slice_ticks[i - 1]);
-    ramp[i] = std::max(ramp[i], 2 * std::floor(path_.ramp_ticks[i] * stretch / 2 * (1 + kSlack)));
-  }
-}
-
-/// Wanted ramps that do not fit into a slice give way, down to what the limits need.
-void Planner::shorten_wanted_ramps() {
-  for (std::size_t i = 1; i <= n_; ++i) {
-    if ((ramp[i] + ramp[i + 1]) / 2 <= slice[i]) continue;
-    const double room = 2 * std::floor(slice[i] / 2);
-    for (const std::size_t k : {i, i + 1}) ramp[k] = std::max(even_least_ramp(k), std::min(ramp[k], room));
-  }
+  for (std::size_t i = 1; i <= n_ + 1; ++i) ramp[i] = 2 * std::ceil(least_ramp(i) / 2 * (1 - kSlack));
 }
 
 /// Slices that the rounding to even ramps has made too short by a tick or two.
@@ -135,6 +116,11 @@ bool Planner::make_room_for_ramps() {
   return grown;
 }
 
+void Planner::adopt(const std::vector<double>& ramp_ticks) {
+  std::copy(ramp_ticks.begin(), ramp_ticks.end(), ramp.begin());
+  for (std::size_t i = 1; i <= n_; ++i) slice[i] = least_slice[i] = (ramp[i] + ramp[i + 1]) / 2;
+}
+
 std::optional<std::string> Planner::plan() {
   for (int round = 0; round < kMostRounds; ++round) {
     const bool forwards = grow_forwards(), backwards = grow_backwards();
@@ -142,7 +128,6 @@ std::optional<std::string> Planner::plan() {
       return "a segment would take more ticks than a queue entry can count; raise the limits or the number of segments";
     if (forwards || backwards) continue;
     set_ramps();
-    shorten_wanted_ramps();
     if (!make_room_for_ramps()) return std::nullopt;
   }
   return fmt::format("the times of the segments do not settle in {} rounds; change the limits or the number of segments", kMostRounds);
@@ -209,8 +194,8 @@ void round_units_making_up(Sheet& sheet, const Planner& plan) {
       const double before = axis.motor_vel[i - 1];
       const double corner = axis.position[i] * kUnitsPerCount;
       const double ramp = plan.ramp[i], ticks = sheet.motor_time[i];
-      // position + before * ramp + (v - before) * (ramp + 1) / 2 + v * (ticks - ramp) + v * next_ramp / 2 = corner
-      const double wanted = (corner - position - before * (ramp - 1) / 2) / (plan.slice[i] + 0.5);
+      // position + before * ramp + (v - before) * (ramp + 1) / 2 + v * (ticks - ramp) + v * (next_ramp - 1) / 2 = corner
+      const double wanted = (corner - position - before * (ramp - 1) / 2) / plan.slice[i];
       axis.motor_vel[i] = std::abs(axis.delta[i]) > 0 || before != 0 ? std::round(wanted) : 0;
       const double change = axis.motor_vel[i] - before;
       axis.motor_acc[i] = ramp > 0 ? std::copysign(std::ceil(std::abs(change) / ramp), change) : change;
@@ -225,7 +210,8 @@ void round_units_making_up(Sheet& sheet, const Planner& plan) {
 
 std::optional<std::string> fill_closed(Sheet& sheet, const PathTable& path) {
   Planner planner(sheet, path);
-  if (auto why = planner.plan()) return why;
+  if (!path.ramp_ticks.empty()) planner.adopt(path.ramp_ticks);
+  else if (auto why = planner.plan()) return why;
   fill_times(sheet, planner);
   fill_motion(sheet, planner);
   if (path.makes_up) round_units_making_up(sheet, planner);

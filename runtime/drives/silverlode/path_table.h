@@ -22,10 +22,11 @@
 namespace pmac::drives::silverlode {
 
 struct PathTable {
-  std::vector<double> slice_ticks;      // [1..n] wanted time of each segment, whole, at least 1; [0] is not used
+  std::vector<double> slice_ticks;      // [1..n] wanted time of each segment, whole, at least 1; not used with ramp_ticks
   double least_slice_ticks = 0;
   std::vector<AxisLimits> limits;       // [axis]
-  /// [1..n+1] wanted length of each ramp, whole and even; empty: as short as the limits allow. Shorter where the slices leave no room.
+  /// [1..n+1] length of each ramp, whole and even; each slice is then the mean of its two ramps, there is no stretch at constant speed, and
+  /// who gives them has seen to the limits. Empty: as short as the limits allow.
   std::vector<double> ramp_ticks;
   /// Each entry makes up for what rounding cost the entries before it.
   bool makes_up = false;
