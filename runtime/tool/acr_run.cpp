@@ -16,6 +16,7 @@
 #include "runtime/acr1000/print.h"
 #include "runtime/motion/print.h"
 #include "runtime/tool/acr_cards.h"
+#include "runtime/tool/acr_console.h"
 #include "runtime/tool/acr_options.h"
 #include "runtime/tool/acr_outputs.h"
 #include "runtime/tool/acr_report.h"
@@ -373,6 +374,10 @@ bool is_card_run(const RunOptions& options) {
 int run_cards(const RunOptions& options, std::function<bool()> interrupted) {
   if (const std::string option = foreign_option(options); !option.empty()) return usage(option + " has no meaning for ACR1000 cards");
   if (const std::string problem = stage_problem(options); !problem.empty()) return usage(problem);
+  if (options.console) {
+    if (!options.files.empty() || options.realtime) return usage("--console of a card takes neither files nor --realtime; send the lines to its standard input");
+    return run_card_console({options.cards.settings, options.console_step_ms / 1000, options.max_time_s});
+  }
   compiler::Options compile_options;
   compile_options.dialect = compiler::Dialect::kAcr1000;
   compile_options.card_settings = options.cards.settings;
