@@ -20,6 +20,8 @@ namespace {
 
 namespace sl = drives::silverlode;
 
+constexpr std::int64_t kMostRunTicks = 500'000'000;     // of a whole table, more than 16 hours
+
 /// Takes the servos' positions at every tick: figures, record, picture.
 class Observer {
  public:
@@ -177,6 +179,11 @@ int run_circle(const SilverlodeOptions& options) {
     return kExitUsage;
   }
   const sl::Table& table = std::get<sl::Table>(made);
+  if (table.ticks() > kMostRunTicks) {
+    std::fprintf(stderr, "pmac-silverlode: the arc would take %.0f s, more than %.0f s are not simulated; raise the velocity or the limits\n", static_cast<double>(table.ticks()) * sl::kTick_s,
+                 static_cast<double>(kMostRunTicks) * sl::kTick_s);
+    return kExitUsage;
+  }
   Observer observer(options, table);
   const std::optional<sl::NetworkResult> link = execute(options, table, observer);
   const CircleReport report{options, std::get<sl::Sheet>(built), table, observer.figures(), link};

@@ -105,6 +105,7 @@ TEST_CASE("silverlode circle: bad values are named", "[tools]") {
   refused("--max-speed 9000 --velocity 1e7 --max-accel 1e8", "beyond 2147483647");
   refused("--segments 3 --velocity 1e-6", "more ticks than a queue entry can count");
   refused("--segments 3 --velocity 1e-6 --builder literal", "time in ticks");
+  refused("--velocity 0.01", "are not simulated");
   refused("--record r.xyz", "unknown ending");
   refused("--record r.csv --table r.csv", "two outputs");
   refused("--press 'soon stop'", "'soon' is not a number");

@@ -13,6 +13,7 @@ namespace pmac::drives::silverlode {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kLongSlice_ticks = 100'000;     // from here on half a velocity unit is more than a thousandth of a count
 
 std::vector<std::string> axis_names(const CircleSetup& setup) {
   return setup.knife_counts_deg ? std::vector<std::string>{"X", "Y", "theta"} : std::vector<std::string>{"X", "Y"};
@@ -173,6 +174,7 @@ std::variant<Sheet, std::string> build_closed(const CircleSetup& setup) {
   path.slice_ticks.assign(sheet.segments() + 1, std::max(1.0, std::round(sheet.slice_s / kTick_s)));
   path.least_slice_ticks = std::ceil(setup.min_slice_s / kTick_s - 1e-9);
   path.limits = setup.limits;
+  path.makes_up = std::max(path.slice_ticks.back(), path.least_slice_ticks) > kLongSlice_ticks;
   sheet.rounded_slice_s = path.slice_ticks.back() * kTick_s;
   if (auto why = fill_closed(sheet, path)) return *why;
   return sheet;
