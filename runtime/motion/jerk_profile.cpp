@@ -187,7 +187,7 @@ template <class Visit> void ProfileSolver::each_condition(Visit visit) {
         visit(n++, i, std::array<double, 3>{-u0, -u1, 0}, -value - 1);
       }
       if (r.inv_accel > 0 && inner_start && inner_end && !r.is_straight) {   // half-way
-        const double t = (r.start_tangent + r.end_tangent) / 2 * r.inv_accel, k4 = (r.start_curvature + r.end_curvature) / 8 * r.inv_accel;
+        const double t = r.middle_tangent * r.inv_accel, k4 = (r.start_curvature + r.end_curvature) / 8 * r.inv_accel;
         const double u0 = (k4 * b0 - t * g0 / 2) * f0, u1 = (k4 * (a0 + 2 + b1) + t * (g0 - g1) / 2) * f1, u2 = (k4 * a1 + t * g1 / 2) * f2;
         const double value = k4 * (x_[i] + 2 * c_[i + 1] + x_[i + 1]) + t * (y_[i] + y_[i + 1]) / 4;
         visit(n++, i, std::array<double, 3>{u0, u1, u2}, value - 1);

@@ -27,7 +27,7 @@ namespace pmac::motion {
 /// What one motor, or the tightest of all where the path is straight, makes of a cell.
 struct ProfileRow {
   double inv_accel = 0, inv_jerk = 0;           // ms^2/mu, ms^3/mu; 0: off
-  double start_tangent = 0, start_curvature = 0, end_tangent = 0, end_curvature = 0, curvature_rate = 0;
+  double start_tangent = 0, start_curvature = 0, middle_tangent = 0, end_tangent = 0, end_curvature = 0, curvature_rate = 0;
   bool is_straight = false;                     // no curvature
 };
 
