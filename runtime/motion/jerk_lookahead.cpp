@@ -24,7 +24,7 @@ void JerkLookahead::add(Segment segment, std::vector<TimedSegment>& out) {
   prepared_.clear();
   if (planned_ms() < window_ms_ + chunk_ms_) return;
   grew_ = true;
-  while (planned_ms() >= window_ms_ && go_on(out)) {}
+  while (planned_ms() >= std::min(window_ms_, plan_.felt_ms()) && go_on(out)) {}
 }
 
 void JerkLookahead::finish(std::vector<TimedSegment>& out) {

@@ -12,6 +12,7 @@ constexpr double kSpeedShare = 0.998, kSpeedShareOnCurves = 0.996;
 constexpr double kTurn_rad = 0.05;    // of the tangent in one cell
 constexpr double kChange = 0.3;       // of the curvature in one cell, of its greatest,
 constexpr double kSlightTurn_rad = 0.01;   // where the tangent turns by more than this
+constexpr double kShortestTime = 0.25;  // of a servo period: of cells that are made because of that
 constexpr double kOffJerk = 0.03, kOffAccel = 0.001;   // of the limits: what the curvature is off in the middle of a cell, taken as even
 constexpr int kHalvings = 30;         // of a segment into cells
 constexpr double kKink_rad = 0.1, kStraight_rad = 1e-9;
@@ -143,17 +144,17 @@ void JerkPath::judge(PathCell& cell) const {
 }
 
 /// Whether motion as fast as the place allows would have much more acceleration or jerk than with a curvature that changes evenly. Not in
-/// cells that take less than a servo period.
+/// cells that take less than a servo period, for the acceleration a part of it.
 bool JerkPath::bends_unevenly(const PathPlace& from, const PathPlace& middle, const PathPlace& to, double length_mu) const {
   const double speed2 = std::min({from.steady_speed2, middle.steady_speed2, to.steady_speed2}), speed = std::sqrt(speed2);
-  if (length_mu < speed * servo_period_ms_) return false;
+  if (length_mu < kShortestTime * speed * servo_period_ms_) return false;
   double off_accel = 0, off_jerk = 0;
   for (std::size_t m = 0; m < std::min(limits_.size(), from.tangent.size()); ++m) {
     const double off = std::abs(middle.curvature_mu[m] - (from.curvature_mu[m] + to.curvature_mu[m]) / 2) * speed2;
     off_accel = std::max(off_accel, off * limits_[m].inv_amax_ms2_mu);
     off_jerk = std::max(off_jerk, 4 * off * speed / length_mu * limits_[m].inv_jmax_ms3_mu);
   }
-  return off_jerk > kOffJerk || off_accel > kOffAccel;
+  return off_accel > kOffAccel || (off_jerk > kOffJerk && length_mu > speed * servo_period_ms_);
 }
 
 /// Halves until the derivatives and the program's speed change evenly, or it is too short for bends to be felt.

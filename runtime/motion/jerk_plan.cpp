@@ -8,18 +8,36 @@ namespace pmac::motion {
 namespace {
 
 /// Parts of the limits that a plan may use.
-constexpr double kAccel = 0.998, kJerk = 0.99;
+constexpr double kAccel = 0.997, kJerk = 0.99;
 /// And how much more the solution may turn out to use of these.
 constexpr double kSpeedRoom = 1.001, kAccelRoom = 1.001, kJerkRoom = 1.035;
 constexpr double kLongestStep_ms = 5, kStepsPerRamp = 8, kStepsPerStretch = 44;
 /// Cells in which the acceleration changes by this part of its limit are divided in so many, if they take so many times the finest step.
 constexpr double kMuchChange = 0.12, kRefineFrom = 1.5;
 constexpr int kParts = 3, kRefinements = 4;
+constexpr double kRoughGap = 0.02, kGap = 1e-3;   // of the time, from the fastest profile
+constexpr double kStops = 3;              // so many times as long as a stop takes is what lies ahead felt
 constexpr double kRestSteps = 2;          // the cell from or to rest takes so many steps
 constexpr double kFirstGuess = 0.6;       // of the estimated square of the speed
 constexpr double kStep = 1e-6;            // of a limit: smaller steps of acceleration between cells are none
 
 double between(double a, double b, double part) { return a + (b - a) * part; }
+
+/// The tangent turns as its derivative, the curvature, says.
+double tangent_at(const PathCell& cell, std::size_t m, double part) {
+  const double t0 = cell.start.tangent[m], t1 = cell.end.tangent[m], rise = t1 - t0;
+  const double off0 = cell.start.curvature_mu[m] * cell.length_mu - rise, off1 = rise - cell.end.curvature_mu[m] * cell.length_mu;
+  return t0 + part * rise + part * (1 - part) * ((1 - part) * off0 + part * off1);
+}
+
+double curvature_at(const PathCell& cell, std::size_t m, double part) { return between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], part); }
+
+/// On curves a motor's part of the speed is at most the mean of its squares at the ends; that is safe where ends differ little.
+double max_speed2_at(const PathCell& cell, double offset_mu) {
+  const double part = offset_mu / cell.length_mu, start = cell.start.max_speed2, end = cell.end.max_speed2;
+  const bool alike = std::max(start, end) < 1.5 * std::min(start, end);
+  return cell.is_straight || !alike ? between(start, end, part) : 1 / between(1 / start, 1 / end, part);
+}
 
 /// Square of the speed that the acceleration and the jerk reach over a length from rest.
 double from_rest2(const PathCell& cell, double length_mu) {
@@ -54,6 +72,18 @@ CellMotion JerkPlan::advance() {
   return motion_through(cell.to_mu - cell.from_mu, x0, y0, x1, y1);
 }
 
+void JerkPlan::take_felt() {
+  double speed2 = 0, inv_accel = 0, inv_jerk = 0;
+  for (std::size_t i = next_; i + 1 < profile_.nodes(); ++i) {
+    const PathCell& cell = path_.cell(cells_[i].cell);
+    speed2 = std::max(speed2, profile_.speed2[i]);
+    inv_accel = std::max(inv_accel, cell.inv_accel_ms2_mu);
+    inv_jerk = std::max(inv_jerk, cell.inv_jerk_ms3_mu);
+  }
+  const double speed = std::sqrt(speed2);
+  felt_ms_ = kStops * (speed * inv_accel + (inv_accel > 0 ? inv_jerk / inv_accel : 2 * std::sqrt(speed * inv_jerk)));
+}
+
 void JerkPlan::renew() {
   first_ = state_.cell;
   if (state_.offset_mu >= path_.cell(first_).length_mu) state_ = {++first_, 0, state_.speed2, state_.slope};
@@ -63,16 +93,22 @@ void JerkPlan::renew() {
   new_cells_.assign(cells_.begin() + static_cast<std::ptrdiff_t>(next_), cells_.begin() + static_cast<std::ptrdiff_t>(next_ + kept));
   divide(kLongestStep_ms, kept, end);
   guess(kept);
-  bool solved = false;
-  for (int i = 0; i <= kRefinements; ++i) {
-    make_problem();
-    solved = solver_.solve(problem_, new_profile_);
-    if (!solved || i == kRefinements || !refine()) break;
-  }
+  const bool solved = solve_refined();
   if (!accept(solved)) return;
   std::swap(cells_, new_cells_);
   std::swap(profile_, new_profile_);
   next_ = 0;
+  take_felt();
+}
+
+/// Roughly while cells are being divided.
+bool JerkPlan::solve_refined() {
+  for (int i = 0; i <= kRefinements; ++i) {
+    make_problem();
+    if (!solver_.solve(problem_, kRoughGap, new_profile_)) return false;
+    if (i == kRefinements || !refine()) break;
+  }
+  return solver_.go_on(kGap, new_profile_);
 }
 
 /// Behind the last cell before the next rest.
@@ -205,9 +241,10 @@ bool JerkPlan::refine() {
     part_speed2_.push_back(new_profile_.speed2[i + 1]);
   }
   const bool any = parts_.size() > new_cells_.size();
+  if (!any) return false;
   std::swap(parts_, new_cells_);
   std::swap(part_speed2_, guess_speed2_);
-  return any;
+  return true;
 }
 
 bool JerkPlan::is_coarse(std::size_t i, double finest_ms) const {
@@ -228,10 +265,10 @@ void JerkPlan::make_problem() {
     const PathCell& cell = path_.cell(planned.cell);
     const bool whole = planned.to_mu == cell.length_mu;
     add_rows(planned);
-    double max_speed2 = between(cell.start.max_speed2, cell.end.max_speed2, planned.to_mu / cell.length_mu);
+    double max_speed2 = max_speed2_at(cell, planned.to_mu);
     if (whole && i + 1 < new_cells_.size()) max_speed2 = std::min(max_speed2, path_.cell(planned.cell + 1).start.max_speed2);
     problem_.max_speed2.push_back(max_speed2);
-    problem_.middle_speed2.push_back(between(cell.start.max_speed2, cell.end.max_speed2, (planned.from_mu + planned.to_mu) / (2 * cell.length_mu)));
+    problem_.middle_speed2.push_back(max_speed2_at(cell, (planned.from_mu + planned.to_mu) / 2));
     problem_.guess_speed2.push_back(guess_speed2_[i]);
   }
   problem_.guess_speed2.back() = 0;
@@ -244,13 +281,12 @@ void JerkPlan::add_rows(const PlannedCell& planned) {
   const ProfileRow* last = problem_.rows.empty() ? nullptr : problem_.rows.data() + problem_.first_row[problem_.first_row.size() - 2];
   const double from = planned.from_mu / cell.length_mu, to = planned.to_mu / cell.length_mu;
   std::vector<ProfileRow> rows;
-  if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / kJerk, 1, 0, 1, 0, 0, true});
+  if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / kJerk, 1, 0, 1, 1, 0, 0, true});
   for (std::size_t m = 0; !cell.is_straight && m < std::min(path_.limits().size(), cell.start.tangent.size()); ++m) {
     const MotorLimits& limit = path_.limits()[m];
     if (limit.inv_amax_ms2_mu <= 0 && limit.inv_jmax_ms3_mu <= 0) continue;
-    rows.push_back({limit.inv_amax_ms2_mu / (kAccel * cell.accel_share), limit.inv_jmax_ms3_mu / kJerk,
-                    between(cell.start.tangent[m], cell.end.tangent[m], from), between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], from),
-                    between(cell.start.tangent[m], cell.end.tangent[m], to), between(cell.start.curvature_mu[m], cell.end.curvature_mu[m], to),
+    rows.push_back({limit.inv_amax_ms2_mu / (kAccel * cell.accel_share), limit.inv_jmax_ms3_mu / kJerk, tangent_at(cell, m, from), curvature_at(cell, m, from),
+                    tangent_at(cell, m, (from + to) / 2), tangent_at(cell, m, to), curvature_at(cell, m, to),
                     (cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu, false});
   }
   bool steps = last == nullptr || before != rows.size();

@@ -37,6 +37,9 @@ class JerkPlan {
   /// The plan ends at a stop of the path: no more can be gained by knowing more.
   bool ends_at_stop() const;
 
+  /// What lies further ahead has no effect on the present motion.
+  double felt_ms() const { return felt_ms_; }
+
   const PathState& state() const { return state_; }
   const PlannedCell& next_cell() const { return cells_[next_]; }
   /// Goes through the next cell.
@@ -52,7 +55,9 @@ class JerkPlan {
   std::size_t kept_cells() const;
   void divide(double step_ms, std::size_t kept, std::size_t end);
   void divide_cell(std::size_t cell, double from_mu, bool starts, bool ends, double step_ms);
+  void take_felt();
   void guess(std::size_t kept);
+  bool solve_refined();
   bool refine();
   bool is_coarse(std::size_t i, double finest_ms) const;
   void make_problem();
@@ -68,6 +73,7 @@ class JerkPlan {
   std::vector<double> guess_speed2_, part_speed2_;   // [end of a new cell]
   Profile profile_, new_profile_;
   std::size_t next_ = 0;
+  double felt_ms_ = 1e300;
   std::size_t first_ = 0;             // cell of the path in which the stretch starts
   Stretch stretch_;
   ProfileProblem problem_;

@@ -8,7 +8,8 @@ namespace pmac::motion {
 namespace {
 
 constexpr int kMostSteps = 60;
-constexpr double kGap = 1e-3, kNearGap = 0.02;   // of the time: the profile is that near to the fastest, or after many steps near enough
+constexpr double kNearGap = 0.02;      // of the time: after many steps the profile is near enough to the fastest
+constexpr double kFirstMu = 0.1;
 constexpr double kUnmet = 1e-4;        // of a limit
 constexpr double kLeastCentering = 0.1;
 constexpr double kToBoundary = 0.95;   // of the way to the nearest condition in one step
@@ -62,38 +63,42 @@ ProfileUse use_of(const ProfileProblem& problem, const Profile& profile) {
   return use;
 }
 
-bool ProfileSolver::solve(const ProfileProblem& problem, Profile& profile) {
+bool ProfileSolver::solve(const ProfileProblem& problem, double gap, Profile& profile) {
   problem_ = &problem;
   cells_ = problem.cells();
   start();
+  take_weights();
+  take_nodes();
+  take_times();
+  mu_ = kFirstMu * total_ms() / static_cast<double>(cells_);
+  each_condition([&](std::size_t n, std::size_t, const std::array<double, 3>&, double value) {
+    slack_[n] = std::max(-value, 0.1);
+    price_[n] = mu_ / slack_[n];
+  });
+  return go_on(gap, profile);
+}
+
+bool ProfileSolver::go_on(double gap, Profile& profile) {
   bool found = false, near = false;
-  double mu = 0;
-  for (steps_ = 0; steps_ < kMostSteps && !found; ++steps_) {
+  for (int step = 0; step < kMostSteps; ++step) {
     take_weights();
     take_nodes();
     take_times();
-    double total_ms = 0;
-    for (const double t : time_ms_) total_ms += t;
-    if (steps_ == 0) {
-      mu = 0.1 * total_ms / static_cast<double>(std::max<std::size_t>(cells_, 1));
-      each_condition([&](std::size_t n, std::size_t, const std::array<double, 3>&, double value) {
-        slack_[n] = std::max(-value, 0.1);
-        price_[n] = mu / slack_[n];
-      });
-    }
-    assemble(mu);
-    found = gap_ <= kGap * total_ms && unmet_ <= kUnmet && steps_ > 3;
-    near = gap_ <= kNearGap * total_ms && unmet_ <= kUnmet;
+    const double total = total_ms(), count = static_cast<double>(count_);
+    assemble(mu_);
+    near = gap_ <= kNearGap * total && unmet_ <= kUnmet;
+    found = gap_ <= gap * total && unmet_ <= kUnmet && step > 2;
     if (found) break;
     if (!factor_and_solve()) return false;
-    const double part = move(mu), mean = std::inner_product(slack_.begin(), slack_.end(), price_.begin(), 0.0) / static_cast<double>(count_);
-    mu = std::max((1 - part) * (1 - part), kLeastCentering) * mean;
-    mu = std::max(mu, 0.1 * kGap * total_ms / static_cast<double>(count_));
+    const double part = move(mu_), mean = std::inner_product(slack_.begin(), slack_.end(), price_.begin(), 0.0) / count;
+    mu_ = std::max(std::max((1 - part) * (1 - part), kLeastCentering) * mean, 0.1 * gap * total / count);
   }
   profile.speed2 = x_;
   profile.slope = y_;
   return found || near;
 }
+
+double ProfileSolver::total_ms() const { return std::accumulate(time_ms_.begin(), time_ms_.end(), 0.0); }
 
 void ProfileSolver::start() {
   const ProfileProblem& p = *problem_;
@@ -182,7 +187,7 @@ template <class Visit> void ProfileSolver::each_condition(Visit visit) {
         visit(n++, i, std::array<double, 3>{-u0, -u1, 0}, -value - 1);
       }
       if (r.inv_accel > 0 && inner_start && inner_end && !r.is_straight) {   // half-way
-        const double t = (r.start_tangent + r.end_tangent) / 2 * r.inv_accel, k4 = (r.start_curvature + r.end_curvature) / 8 * r.inv_accel;
+        const double t = r.middle_tangent * r.inv_accel, k4 = (r.start_curvature + r.end_curvature) / 8 * r.inv_accel;
         const double u0 = (k4 * b0 - t * g0 / 2) * f0, u1 = (k4 * (a0 + 2 + b1) + t * (g0 - g1) / 2) * f1, u2 = (k4 * a1 + t * g1 / 2) * f2;
         const double value = k4 * (x_[i] + 2 * c_[i + 1] + x_[i + 1]) + t * (y_[i] + y_[i + 1]) / 4;
         visit(n++, i, std::array<double, 3>{u0, u1, u2}, value - 1);
@@ -212,7 +217,7 @@ void ProfileSolver::assemble(double mu) {
   for (auto* each : {&d0_, &d1_, &d2_, &r_}) std::fill(each->begin(), each->end(), 0.0);
   gap_ = unmet_ = 0;
   each_condition([&](std::size_t n, std::size_t first, const std::array<double, 3>& g, double value) {
-    const double residual = value + slack_[n], stiff = price_[n] / slack_[n], push = (mu + price_[n] * residual) / slack_[n];
+    const double residual = value + slack_[n], inv = 1 / slack_[n], stiff = price_[n] * inv, push = (mu + price_[n] * residual) * inv;
     gap_ += price_[n] * slack_[n];
     unmet_ = std::max(unmet_, value);
     const double g0 = g[0] * stiff, g1 = g[1] * stiff, g2 = g[2] * stiff;
@@ -265,11 +270,12 @@ double ProfileSolver::move(double mu) {
   double slack_part = 1, price_part = 1;
   each_condition([&](std::size_t n, std::size_t first, const std::array<double, 3>& g, double value) {
     const double along = g[0] * change_[first] + g[1] * change_[first + 1] + g[2] * change_[first + 2];
-    const double residual = value + slack_[n], stiff = price_[n] / slack_[n];
-    slack_step_[n] = -residual - along;
-    price_step_[n] = (mu + price_[n] * residual) / slack_[n] + stiff * along - price_[n];
-    if (slack_step_[n] < 0) slack_part = std::min(slack_part, -kToBoundary * slack_[n] / slack_step_[n]);
-    if (price_step_[n] < 0) price_part = std::min(price_part, -kToBoundary * price_[n] / price_step_[n]);
+    const double slack = slack_[n], price = price_[n], residual = value + slack;
+    const double slack_step = -residual - along, price_step = (mu + price * (residual + along)) / slack - price;
+    if (slack_step * slack_part < -kToBoundary * slack) slack_part = -kToBoundary * slack / slack_step;
+    if (price_step * price_part < -kToBoundary * price) price_part = -kToBoundary * price / price_step;
+    slack_step_[n] = slack_step;
+    price_step_[n] = price_step;
   });
   for (std::size_t i = 2; i < cells_; ++i)
     if (change_[i] < 0) slack_part = std::min(slack_part, (1 - kSmallest) * c_[i] / -change_[i]);

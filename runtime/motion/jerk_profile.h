@@ -27,7 +27,7 @@ namespace pmac::motion {
 /// What one motor, or the tightest of all where the path is straight, makes of a cell.
 struct ProfileRow {
   double inv_accel = 0, inv_jerk = 0;           // ms^2/mu, ms^3/mu; 0: off
-  double start_tangent = 0, start_curvature = 0, end_tangent = 0, end_curvature = 0, curvature_rate = 0;
+  double start_tangent = 0, start_curvature = 0, middle_tangent = 0, end_tangent = 0, end_curvature = 0, curvature_rate = 0;
   bool is_straight = false;                     // no curvature
 };
 
@@ -64,9 +64,10 @@ CellMotion motion_through(double length_mu, double x0, double y0, double x1, dou
 
 class ProfileSolver {
  public:
-  /// False where no profile was found.
-  bool solve(const ProfileProblem& problem, Profile& profile);
-  int steps() const { return steps_; }
+  /// gap: how near to the fastest profile, in parts of its time. False where no profile was found.
+  bool solve(const ProfileProblem& problem, double gap, Profile& profile);
+  /// Nearer to it, from where the last solve() ended; its problem is still there.
+  bool go_on(double gap, Profile& profile);
 
  private:
   void start();
@@ -77,12 +78,11 @@ class ProfileSolver {
   void assemble(double mu);
   bool factor_and_solve();
   double move(double mu);
-  bool is_free(std::size_t i) const { return i >= 1 && i + 2 <= cells_; }
+  double total_ms() const;
 
   const ProfileProblem* problem_ = nullptr;
   std::size_t cells_ = 0, count_ = 0;
-  int steps_ = 0;
-  double gap_ = 0, unmet_ = 0;
+  double gap_ = 0, unmet_ = 0, mu_ = 0;
   // [cell], shifted by one: c_[i + 1] is of cell i
   std::vector<double> c_, change_;
   std::vector<double> weight_, time_ms_, middle_x_;             // [cell]

@@ -140,6 +140,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   }
   if (const std::string bad = check_seconds(max_time); !bad.empty()) return usage("--max-time: " + bad);
   o.max_time_s = std::stod(max_time);
+  o.max_time_given = app.count("--max-time") > 0;
   for (const std::string& define : defines) {
     const std::size_t equals = define.find('=');
     o.defines.emplace_back(define.substr(0, equals), equals == std::string::npos ? "1" : define.substr(equals + 1));

@@ -32,6 +32,7 @@ struct RunOptions {
   std::vector<std::pair<double, std::string>> timed_commands; // --at seconds, text
   std::optional<double> until_s;                              // absent: until idle
   double max_time_s = 3600;
+  bool max_time_given = false;
   std::uint64_t max_instructions = 20'000'000'000;
   std::uint64_t max_moves = 1'000'000'000;
   std::uint64_t max_memory_mib = 8192;
