@@ -21,8 +21,14 @@ std::string element_default(const bytecode::ElementInfo& info) {
 
 }  // namespace
 
-std::string emit_tokens(Session& session, const InputFile& file) { return session.state().frontend.tokens(file.name, file.text); }
-std::string emit_tree(Session& session, const InputFile& file) { return session.state().frontend.tree(file.name, file.text); }
+std::string emit_tokens(Session& session, const InputFile& file) {
+  if (session.state().options.dialect == Dialect::kAcr1000) return session.state().cards.tokens({file.name, file.text});
+  return session.state().frontend.tokens(file.name, file.text);
+}
+std::string emit_tree(Session& session, const InputFile& file) {
+  if (session.state().options.dialect == Dialect::kAcr1000) return session.state().cards.tree({file.name, file.text});
+  return session.state().frontend.tree(file.name, file.text);
+}
 
 std::string emit_ir(Session& session, const std::vector<InputFile>& files) {
   std::string out;

@@ -41,6 +41,7 @@ Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 
 std::vector<ir::Unit> Session::State::analyse(std::vector<InputFile> files, bool online) {
+  if (options.dialect == Dialect::kAcr1000) return analyse_cards(files, online);
   const auto first_file = static_cast<std::int32_t>(sources.file_count());
   std::vector<ir::Unit> units;
   for (InputFile& file : files) units.push_back(frontend.read(file.name, std::move(file.text)));
@@ -63,6 +64,7 @@ std::optional<bytecode::Module> Session::State::generate(const std::vector<ir::U
   if (diagnostics.has_errors()) return std::nullopt;
   bytecode::Module module = codegen::generate(units, project.names, sources, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
+  module.symbols.insert(module.symbols.end(), card_symbols.begin(), card_symbols.end());
   if (const std::string problem = bytecode::verify(module); !problem.empty()) throw std::logic_error("the compiler made a module that is not valid: " + problem);
   return module;
 }
@@ -78,7 +80,7 @@ std::optional<bytecode::Module> Session::compile_online(std::string_view text, s
   std::vector<source::Diagnostic> found = state_->diagnostics.take();
   for (source::Diagnostic& diagnostic : earlier) state_->diagnostics.report(std::move(diagnostic));
   for (source::Diagnostic& diagnostic : found) {
-    if (diagnostic.severity == source::Severity::kError) diagnostic.message = fmt::format("{}: {}", online_error(diagnostic, in_buffer), diagnostic.message);
+    if (diagnostic.severity == source::Severity::kError && state_->options.dialect == Dialect::kPowerPmac) diagnostic.message = fmt::format("{}: {}", online_error(diagnostic, in_buffer), diagnostic.message);
     state_->diagnostics.report(std::move(diagnostic));
   }
   return module;

@@ -116,6 +116,7 @@ std::string buffer_name(const ir::Buffer& buffer, const source::SourceManager& s
 std::string emit_symbols(Session& session, const std::vector<InputFile>& files) {
   Session::State& state = session.state();
   const std::vector<ir::Unit> units = state.analyse(files, false);
+  if (state.options.dialect == Dialect::kAcr1000) return card_symbols_text(units, state.card_symbols);
   std::vector<Row> rows;
   for (const power_pmac::MacroDefinition& macro : state.frontend.macro_definitions()) rows.push_back({load_position(state.sources, macro.span), macro_row(macro)});
   for (const auto& [name, entry] : state.project.names.all())

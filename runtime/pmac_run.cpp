@@ -11,6 +11,7 @@
 
 #include "compiler/compiler.h"
 #include "runtime/machine.h"
+#include "runtime/tool/acr_run.h"
 #include "runtime/tool/budget.h"
 #include "runtime/tool/console.h"
 #include "runtime/tool/drive_run.h"
@@ -18,6 +19,7 @@
 #include "runtime/tool/kin_check.h"
 #include "runtime/tool/limit_report.h"
 #include "runtime/tool/load.h"
+#include "runtime/tool/mcx_run.h"
 #include "runtime/tool/options.h"
 #include "runtime/tool/outputs.h"
 #include "runtime/tool/recorder.h"
@@ -251,6 +253,11 @@ int main(int argc, char** argv) {
       return kExitUsage;
     }
     std::signal(SIGPIPE, SIG_IGN);
+    if (is_register_script(options)) return run_register_script(options);
+    if (is_card_run(options)) {
+      catch_signals();
+      return run_cards(options, [] { return g_interrupted.load(); });
+    }
     return run(options);
   } catch (const runtime::OutputError& e) {
     std::fprintf(stderr, "pmac-run: %s\n", e.what());

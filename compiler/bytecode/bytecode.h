@@ -18,6 +18,7 @@ enum class Opcode : std::uint16_t;
 enum class Function : std::uint16_t;
 enum class ElementId : std::uint16_t;
 enum class ControlVerb : std::uint16_t;
+enum class CardVerb : std::uint16_t;
 inline constexpr auto kNoFunction = static_cast<Function>(0xffff);
 inline constexpr auto kNoElement = static_cast<ElementId>(0xffff);
 

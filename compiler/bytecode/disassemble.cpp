@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/letters.h"
@@ -51,6 +52,7 @@ class OperandText {
   std::string call() const;
   std::string word() const;
   std::string control() const;
+  std::string card() const;
   std::string letters() const;
 
   const Module& module_;
@@ -121,6 +123,11 @@ std::string OperandText::control() const {
   return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
 }
 
+std::string OperandText::card() const {
+  const std::string verb(card_verb_info(static_cast<CardVerb>(in_.a)).text);
+  return in_.c() == 0 ? verb : verb + ", " + registers(in_.b(), in_.c() > kMaxArguments ? kMaxArguments : in_.c());
+}
+
 std::string OperandText::letters() const {
   return entry(module_.constants, [](double mask) {
     std::string names;
@@ -167,6 +174,7 @@ std::string OperandText::text() const {
       return std::string(motion_parameter_name(static_cast<MotionParameter>(in_.b()))) + ", " + reg(in_.a);
     case OperandFormat::kRegWord: return word();
     case OperandFormat::kControl: return control();
+    case OperandFormat::kCard: return card();
     case OperandFormat::kString: return string();
     case OperandFormat::kPortString: return std::to_string(in_.a) + ", " + string();
     case OperandFormat::kRegString: return a_and(string());

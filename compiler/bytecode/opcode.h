@@ -20,6 +20,7 @@ enum class OperandFormat : std::uint8_t {
   kMoveMode, kAxisMask, kRegMotion, kRegWord, kControl, kString, kPortString, kRegString,
   kAxisDef, kPointerDef, kProgram,
   kRegWordOf, kWordJump, kWord, kCodeOf, kLetters, kRegRun,
+  kCard,
 };
 
 struct OpcodeInfo { std::string_view text; OperandFormat format; std::string_view meaning; };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/opcode.h"
@@ -39,6 +40,13 @@ constexpr std::array<FunctionInfo, kFunctionCount> kFunctions = {{
 #undef FUNCTION
 }};
 
+constexpr std::array<CardVerbInfo, index_of(CardVerb::kCount)> kCardVerbs = {{
+#define CARD_VERB(Name, text, arguments, meaning) {text, arguments, meaning},
+#include "compiler/bytecode/card_verb.def"
+#undef CARD_VERB
+}};
+
+constexpr CardVerbInfo kUnknownCardVerb = {"?", 0, "no such verb"};
 constexpr OpcodeInfo kUnknownOpcode = {"?", OperandFormat::kNone, "no such instruction"};
 constexpr FunctionInfo kUnknownFunction = {"?", "", 0, false, "no such function"};
 
@@ -107,6 +115,10 @@ std::string_view control_verb_name(ControlVerb verb) {
 
 int control_argument_count(ControlVerb verb) {
   return index_of(verb) < kVerbs.size() ? kVerbs[index_of(verb)].argument_count : 0;
+}
+
+const CardVerbInfo& card_verb_info(CardVerb verb) {
+  return index_of(verb) < kCardVerbs.size() ? kCardVerbs[index_of(verb)] : kUnknownCardVerb;
 }
 
 const OpcodeInfo& opcode_info(Opcode opcode) {

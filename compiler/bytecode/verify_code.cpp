@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/letters.h"
@@ -37,6 +38,7 @@ class InstructionCheck {
   std::string sync_target(const SyncTarget& target) const;
   std::string function_operands() const;
   std::string control_operands() const;
+  std::string card_operands() const;
   std::string word_operands() const;
   std::string line_word_operands() const;
   std::string code_operands() const;
@@ -106,6 +108,13 @@ std::string InstructionCheck::control_operands() const {
   return registers(in_.b(), in_.c());
 }
 
+std::string InstructionCheck::card_operands() const {
+  const auto verb = static_cast<CardVerb>(in_.a);
+  if (verb >= CardVerb::kCount) return "no such verb";
+  if (in_.c() != card_verb_info(verb).argument_count) return "wrong number of arguments";
+  return registers(in_.b(), in_.c());
+}
+
 std::string InstructionCheck::word_operands() const {
   const auto kind = static_cast<WordKind>(in_.c());
   if (kind >= WordKind::kCount) return "no such kind of word";
@@ -169,6 +178,7 @@ std::string InstructionCheck::operands() const {
       return in_.b() < static_cast<unsigned>(MotionParameter::kCount) ? registers(in_.a) : "no such motion parameter";
     case OperandFormat::kRegWord: return word_operands();
     case OperandFormat::kControl: return control_operands();
+    case OperandFormat::kCard: return card_operands();
     case OperandFormat::kString: return index(module_.strings.size(), "text");
     case OperandFormat::kPortString: return index(module_.strings.size(), "text");
     case OperandFormat::kRegString: return both(registers(in_.a), index(module_.strings.size(), "text"));

@@ -116,6 +116,8 @@ bytecode::Program ProgramWriter::write_buffer(const ir::Buffer& buffer) {
 bytecode::Program ProgramWriter::write_load(const ir::Unit& unit, std::size_t first_program) {
   bytecode::Program program;
   program.kind = bytecode::ProgramKind::kOnline;
+  program.number = static_cast<std::uint32_t>(unit.card);
+  program.name = unit.axis;
   first_program_ = first_program;
   if (!unit.load.empty()) program.source = tables_.line(unit.load.front()->span);
   begin(unit.local_count);

@@ -98,6 +98,8 @@ class ProgramWriter {
   void write(const ir::Delay& node, const source::Span& span);
   void write(const ir::Evaluate& node, const source::Span& span);
   void write(const ir::Control& node, const source::Span& span);
+  void write(const ir::CardAction& node, const source::Span& span);
+  void write(const ir::RelayCondition& node, const source::Span& span);
   void write(const ir::Command& node, const source::Span& span);
   void write(const ir::Send& node, const source::Span& span);
   void write(const ir::AddressCoord& node, const source::Span& span);

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/opcode.h"
@@ -341,6 +342,26 @@ void ProgramWriter::write(const ir::Control& node, const source::Span&) {
     else load_number(std::numeric_limits<double>::quiet_NaN(), first + i);
   }
   emit_abc(Opcode::kControl, static_cast<Register>(node.verb), first, count);
+}
+
+void ProgramWriter::write(const ir::CardAction& node, const source::Span&) {
+  const auto count = static_cast<unsigned>(bytecode::card_verb_info(node.verb).argument_count);
+  const Register first = take(count);
+  for (Register i = 0; i < count; ++i) {
+    const ir::Expr* argument = i < node.arguments.size() ? node.arguments[i].get() : nullptr;
+    if (argument) value_into(*argument, first + i);
+    else load_number(std::numeric_limits<double>::quiet_NaN(), first + i);
+  }
+  emit_abc(Opcode::kCard, static_cast<Register>(node.verb), first, count);
+}
+
+void ProgramWriter::write(const ir::RelayCondition& node, const source::Span&) {
+  const Register set = take();
+  emit_abc(Opcode::kRelayTest, set, value(*node.relay));
+  Target end;
+  jump_to(Opcode::kJumpIfFalse, set, end);
+  body(node.rest);
+  place(end);
 }
 
 void ProgramWriter::write(const ir::Evaluate& node, const source::Span&) { value_into(*node.value, take()); }

@@ -14,6 +14,7 @@
 
 namespace pmac::compiler::ir {
 
+using bytecode::CardVerb;
 using bytecode::ControlVerb;
 using bytecode::MotionParameter;
 using bytecode::MoveMode;
@@ -143,6 +144,10 @@ struct Evaluate { ExprPtr value; };
 
 /// One verb for one thing, or for each of several: see ControlVerb. Missing arguments are nan.
 struct Control { ControlVerb verb{}; std::vector<ExprPtr> arguments; };
+/// What an ACR1000 program asks of its card. A missing argument is nan.
+struct CardAction { CardVerb verb{}; std::vector<ExprPtr> arguments; };
+/// IF n THEN ...: the rest of the line, executed where the relay is set.
+struct RelayCondition { ExprPtr relay; Body rest; };
 /// text: a printf format where values follow it.
 struct Command { std::string text; std::vector<ExprPtr> values; };
 struct Send { int port = 0; std::string text; std::vector<ExprPtr> values; };
@@ -164,7 +169,7 @@ struct OpenBuffer { std::size_t buffer = 0; };  // index into Unit::buffers: its
 struct Stmt {
   Span span;
   std::variant<Block, Assign, AssignSeries, Evaluate, If, While, DoWhile, Switch, Break, Continue, Label, Locals, Jump, Call, Return, Stop, CodeLine, ReadWords, LineCondition, SetFlag, Cycle, StepBlock, SetMode, SetParameter,
-               SetAbsInc, SetFrax, SetNormal, Move, MoveRows, Dwell, Delay, Control, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
+               SetAbsInc, SetFrax, SetNormal, Move, MoveRows, Dwell, Delay, Control, CardAction, RelayCondition, Command, Send, AddressCoord, AddressMotor, DefineAxis, DefinePointer,
                Globals, Report, SystemCommand, OpenBuffer, ExecuteAtOnce>
       node;
 };
@@ -192,8 +197,10 @@ struct Buffer {
   std::int64_t local_count = 0;    // filled by sema
 };
 
-/// One file, or one on-line text.
+/// One file, or one on-line text; of the ACR1000: what one card is sent.
 struct Unit {
+  std::int64_t card = 0;           // number and axis name of the card, else 0 and nothing
+  std::string axis;
   std::vector<Buffer> buffers;
   Body load;                       // statements of the load stream, in order
   std::int64_t local_count = 0;    // L variables that they use; filled by sema

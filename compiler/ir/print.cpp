@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
@@ -172,6 +173,11 @@ class StmtPrinter {
     if (number && std::isinf(*number)) arguments.replace(0, 3, "all");  // inf: the list *
     line(fmt::format("{} ({})", bytecode::control_verb_name(node.verb), arguments));
   }
+  void operator()(const CardAction& node) { line(fmt::format("card {} ({})", bytecode::card_verb_info(node.verb).text, list(node.arguments))); }
+  void operator()(const RelayCondition& node) {
+    line(fmt::format("if relay {}", print(*node.relay)));
+    body(node.rest);
+  }
   void operator()(const Command& node) { line(fmt::format("cmd \"{}\"{}", node.text, with(node.values))); }
   void operator()(const Send& node) { line(fmt::format("send {} \"{}\"{}", node.port, node.text, with(node.values))); }
   void operator()(const AddressCoord& node) { line(fmt::format("address coord {}", print(*node.number))); }
@@ -207,6 +213,7 @@ class StmtPrinter {
   void operator()(const OpenBuffer& node) { buffer(unit_.buffers[node.buffer]); }
   void operator()(const ExecuteAtOnce& node) { line("execute"); buffer(unit_.buffers[node.buffer]); }
 
+  void title(std::string_view text) { line(text); }
   std::string take() { return std::move(out_); }
 
  private:
@@ -240,6 +247,7 @@ std::string print(const Expr& expr) { return std::visit(ExprPrinter{}, expr.node
 
 std::string print(const Unit& unit) {
   StmtPrinter printer(unit);
+  if (!unit.axis.empty()) printer.title(fmt::format("card {} '{}'", unit.card, unit.axis));
   for (const StmtPtr& statement : unit.load) printer.statement(*statement);
   return printer.take();
 }

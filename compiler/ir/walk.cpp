@@ -83,6 +83,8 @@ class Walk {
   void inside(const Dwell& node) { expr(node.time_ms); }
   void inside(const Delay& node) { expr(node.time_ms); }
   void inside(const Control& node) { list(node.arguments); }
+  void inside(const CardAction& node) { list(node.arguments); }
+  void inside(const RelayCondition& node) { expr(node.relay), body(node.rest); }
   void inside(const Command& node) { list(node.values); }
   void inside(const Send& node) { list(node.values); }
   void inside(const AddressCoord& node) { expr(node.number); }

@@ -34,6 +34,7 @@ std::string stage_text(compiler::Session& session, const std::string& stage, con
   }
   if (stage == "ir") return compiler::emit_ir(session, files);
   if (stage == "symbols") return compiler::emit_symbols(session, files);
+  if (stage == "pmc") return compiler::emit_pmc(session, files);
   if (stage == "tokens" || stage == "tree") {
     for (const compiler::InputFile& file : files) text += stage == "tokens" ? compiler::emit_tokens(session, file) : compiler::emit_tree(session, file);
   } else if (const auto module = session.compile(files)) {
@@ -66,6 +67,15 @@ int compile(compiler::Session& session, const Arguments& arguments, std::vector<
   return kOk;
 }
 
+/// What exists for one language only.
+void refuse_other_dialect(const Arguments& arguments, compiler::Dialect dialect) {
+  const bool cards = dialect == compiler::Dialect::kAcr1000;
+  if (cards && (arguments.fix || arguments.fix_dry_run)) throw UsageError("--fix repairs Power PMAC files only");
+  if (cards && arguments.preprocess) throw UsageError("-E: the ACR1000 has no preprocessor");
+  if (!cards && arguments.emit == "pmc") throw UsageError("--emit=pmc translates ACR1000 files (.acr, or --dialect=acr1000)");
+  if (!cards && !arguments.card_settings.empty()) throw UsageError("--card is for ACR1000 files (.acr, or --dialect=acr1000)");
+}
+
 }  // namespace
 
 int run(const Arguments& arguments) {
@@ -74,6 +84,7 @@ int run(const Arguments& arguments) {
   if (arguments.emit == "elements") return print(compiler::emit_elements()), kOk;
   if (arguments.files.empty()) throw UsageError("no input files; try pmacc --help");
   const compiler::Options options = compiler_options(arguments);
+  refuse_other_dialect(arguments, options.dialect);
   if (arguments.fix || arguments.fix_dry_run) {
     const int done = fix(arguments, options);
     if (arguments.fix_dry_run) return done;

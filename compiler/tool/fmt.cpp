@@ -71,6 +71,7 @@ void print_problems(const std::string& name, const std::string& text, const std:
 }
 
 Outcome format_file(const std::string& name, ProjectNames& project, const FmtArguments& arguments) {
+  if (name.ends_with(".acr") || name.ends_with(".sys")) throw UsageError(fmt::format("{}: an ACR1000 file; pmacc fmt formats Power PMAC script only (blanks mean nothing to the card, LIST is its own form)", name));
   const std::string text = read_file(name);
   const std::string shown = name == "-" ? "<stdin>" : name;
   const style::Formatted formatted = style::format(text, shown, project.of(name == "-" ? "stdin" : name, text), arguments.style);

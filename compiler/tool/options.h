@@ -14,6 +14,8 @@ constexpr int kOk = 0, kUserError = 1, kUsage = 2, kInternal = 70;
 
 struct Arguments {
   std::vector<std::string> files, include_dirs, defines, warnings;
+  std::vector<std::string> card_settings;
+  std::string dialect;
   int max_include_depth = 64;
   std::string output, emit, format = "text", color = "auto", explain;
   std::size_t error_limit = 100;

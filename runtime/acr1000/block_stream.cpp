@@ -9,7 +9,7 @@ namespace pmac::acr1000 {
 namespace {
 
 constexpr std::uint8_t kControlL = 0x0c;
-/// Longest command line that is collected.
+/// Longest command line; what follows is another one.
 constexpr std::size_t kMaxLine = 4096;
 
 bool is_line_end(std::uint8_t byte) { return byte == '\r' || byte == '\n'; }
@@ -81,7 +81,8 @@ StreamItem BlockReader::line() {
   for (;;) {
     if (at_ == size_ && !fill()) return item;
     if (is_line_end(buffer_[at_]) || buffer_[at_] == kControlD || buffer_[at_] == kControlL) return item;
-    if (item.line.size() < kMaxLine) item.line += static_cast<char>(buffer_[at_]);
+    if (item.line.size() == kMaxLine) return item;
+    item.line += static_cast<char>(buffer_[at_]);
     skip(1);
   }
 }
@@ -119,11 +120,9 @@ std::optional<DriverFault> BlockStreamDriver::take(const StreamItem& item) {
     case StreamItem::Kind::kLine:
       if (actions_.execute) return actions_.execute(item.line);
       return fault_of(item, "ACR-E12", "a stream of blocks holds what is neither a block nor ctrl-L");
-    case StreamItem::Kind::kError: {
+    case StreamItem::Kind::kError:
       ++blocks_;
-      const std::string missing = item.error.bytes_missing > 0 ? fmt::format("; {} bytes are missing", item.error.bytes_missing) : "";
-      return fault_of(item, std::string(row_of(DiagnosticId::kBadBlock).id), fmt::format("{}, at byte {}{}", item.error.detail, item.error.offset, missing));
-    }
+      return fault_of(item, std::string(row_of(DiagnosticId::kBadBlock).id), text_of(item.error));
     case StreamItem::Kind::kBlock: break;
   }
   ++blocks_;

@@ -44,6 +44,8 @@ class CardDriver {
   virtual std::span<const double> parameters() const = 0;
   /// Depth of subroutines.
   virtual int nesting() const = 0;
+  /// Tells places in the program apart, with the places that its subroutines will return to: equal where both are equal.
+  virtual std::uint64_t position() const { return 0; }
   /// Grows with every output.
   virtual std::uint64_t outputs() const = 0;
 };

@@ -25,12 +25,13 @@ Card& CardSystem::add(CardConfig config) {
 
 SystemOutcome CardSystem::run(const SystemLimits& limits) {
   max_commands_ = limits.max_commands;
+  interrupted_ = limits.interrupted;
   const double last_s = std::min(limits.max_s, limits.until_s);
   SystemEnd end = SystemEnd::kIdle;
   for (;;) {
     step_cards();
     if (commands_ >= max_commands_) { end = SystemEnd::kBudget; break; }
-    if (limits.interrupted && limits.interrupted()) { end = SystemEnd::kInterrupted; break; }
+    if (is_interrupted()) { end = SystemEnd::kInterrupted; break; }
     if (begin_moves() || report_deadlocks()) continue;
     const double next_s = next_event_s();
     if (next_s == kNever && !limits.has_until) break;
@@ -63,6 +64,12 @@ void CardSystem::halt(std::size_t index) {
   wake(index);
 }
 
+void CardSystem::abandon(std::size_t index) {
+  seats_[index].card->driver->abandon();
+  seats_[index].card->drop_waiting();
+  wake(index);
+}
+
 /// The card's driver stops for good; its move comes to its end.
 void CardSystem::give_up(Seat& seat, std::string_view id, const Place& place) {
   seat.card->driver->abandon();
@@ -77,7 +84,7 @@ void CardSystem::give_up(Seat& seat, std::string_view id, const Place& place) {
 void CardSystem::step_cards() {
   for (std::size_t k = 0; k < seats_.size(); ++k) {
     if (seats_[k].activity == Activity::kPauses && seats_[k].resume_s <= time_s_) seats_[k].activity = Activity::kRuns;
-    while (seats_[k].activity == Activity::kRuns && !seats_[k].card->waits() && commands_ < max_commands_) step(k);
+    while (seats_[k].activity == Activity::kRuns && !seats_[k].card->waits() && commands_ < max_commands_ && !is_interrupted()) step(k);
   }
 }
 
@@ -86,7 +93,7 @@ void CardSystem::step(std::size_t index) {
   const DriverStep step = seat.card->driver->step(std::min(kStepBudget, max_commands_ - commands_));
   commands_ += step.commands;
   switch (step.stop) {
-    case DriverStop::kWaits:
+    case DriverStop::kWaits: return seat.failed_id.clear();
     case DriverStop::kBudget: return;
     case DriverStop::kIdle: seat.activity = Activity::kIdle; return;
     case DriverStop::kJumpedBack: return jumped_back(seat);
@@ -115,7 +122,7 @@ ProgramState CardSystem::state_of(const Seat& seat) const {
   const Card& card = *seat.card;
   const CardDriver& driver = *card.driver;
   const std::span<const double> parameters = driver.parameters();
-  return {driver.place(), driver.nesting(), driver.outputs(), card.rates, {parameters.begin(), parameters.end()}, card.relays(), card.moves(), driver.program_runs()};
+  return {driver.place(), driver.position(), driver.nesting(), driver.outputs(), card.rates, {parameters.begin(), parameters.end()}, card.relays(), card.moves(), driver.program_runs()};
 }
 
 std::vector<std::size_t> CardSystem::endless_loops() const {

@@ -86,6 +86,8 @@ class CardSystem {
   void wake(std::size_t card);
   /// Stops a card's program; its move comes to its end, what waits is dropped.
   void halt(std::size_t card);
+  /// Stops everything that the card has still to do, its program and what its host has still to send; its move comes to its end.
+  void abandon(std::size_t card);
 
   SystemOutcome run(const SystemLimits& limits);
   double time_s() const { return time_s_; }
@@ -127,6 +129,7 @@ class CardSystem {
   void note(CardNotice notice);
   void explain_limit(const char* what);
   ProgramState state_of(const Seat& seat) const;
+  bool is_interrupted() const { return interrupted_ && interrupted_(); }
   bool is_over(const Seat& seat) const { return seat.activity == Activity::kIdle || seat.activity == Activity::kFailed || seat.activity == Activity::kLoops; }
 
   SystemObservers observers_;
@@ -135,6 +138,7 @@ class CardSystem {
   double time_s_ = 0;
   std::uint64_t coordinated_moves_ = 0;
   std::uint64_t commands_ = 0, max_commands_ = 0;
+  std::function<bool()> interrupted_;
   bool any_error_ = false;
 };
 

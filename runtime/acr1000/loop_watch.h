@@ -13,6 +13,7 @@ namespace pmac::acr1000 {
 
 struct ProgramState {
   Place place;
+  std::uint64_t position = 0;
   int nesting = 0;
   std::uint64_t outputs = 0;
   RateSettings rates;

@@ -154,6 +154,11 @@ std::variant<DecodedBlock, BlockError> decode_text(std::span<const std::uint8_t>
 
 }  // namespace
 
+std::string text_of(const BlockError& error) {
+  const std::string missing = error.bytes_missing > 0 ? fmt::format("; {} bytes are missing", error.bytes_missing) : "";
+  return fmt::format("{}, at byte {}{}", error.detail, error.offset, missing);
+}
+
 CircleArguments circle_of(const MoveBlock& block) {
   const std::int64_t length = block.distance;
   return {length < 0 ? -1 : 1, block.radius, block.i, block.j, length < 0 ? -length : length};

@@ -44,6 +44,8 @@ struct [[nodiscard]] BlockError {
   std::size_t bytes_missing = 0;
   std::string detail;
 };
+/// "the block ends after 5 of 12 bytes, at byte 5; 7 bytes are missing".
+std::string text_of(const BlockError& error);
 
 /// Bytes of the block at the front of so_far (which begins with ctrl-D), known from its second byte for binary blocks and from its
 /// third CR for text; 0: not known yet.

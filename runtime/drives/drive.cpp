@@ -1,4 +1,5 @@
 #include "runtime/drives/drive.h"
+#include "runtime/drives/mcx514/mcx514_drive.h"
 
 namespace pmac::drives {
 namespace {

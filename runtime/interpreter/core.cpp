@@ -354,6 +354,8 @@ dispatch_next:
   MOTION(StepBegin);
   MOTION(StepEnd);
   OP(Control) : HOST(host_.control(thread_, static_cast<bytecode::ControlVerb>(pc->a), {r + pc->b(), pc->c()}));
+  OP(Card) : HOST(host_.card(thread_, static_cast<bytecode::CardVerb>(pc->a), {r + pc->b(), pc->c()}));
+  OP(RelayTest) : SAVE(); r[pc->a] = host_.relay(thread_, RB); LEAVE_UNLESS(!host_failed());
   OP(Command) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
   OP(Send) : SAVE(); LEAVE_UNLESS(put_out(*pc) == Next::kContinue);
   ONLINE(AddressCoord);

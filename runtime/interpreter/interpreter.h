@@ -73,6 +73,10 @@ class Host {
   virtual ProgramHandle find_subprogram(std::uint32_t number) = 0;
   virtual Flow command(Thread&, std::string_view text) = 0;
   virtual Flow send(Thread&, int port, std::string_view text) = 0;
+  /// What a program of an ACR1000 asks of its card. A host that is no card refuses it with a fault.
+  virtual Flow card(Thread&, bytecode::CardVerb, std::span<const double> arguments);
+  /// 1 where the relay of a card is set, else 0; as above.
+  virtual double relay(Thread&, double number);
   virtual double random(double range) = 0;
   virtual void seed_random(double seed) = 0;
   /// AddressCoord .. Report of load scripts. registers as for motion().
@@ -138,6 +142,11 @@ class Thread {
   int own_coord = -1;     // coordinate system that executes this motion program; -1: none, coord is meant instead
   bool ends_scans = false;// a PLC program: ScanLoop ends the scan
   void* context = nullptr;// for the host's use
+
+  /// Routines that have been called and have not returned.
+  std::size_t call_depth() const { return frames_.size(); }
+  /// Number in its buffer of the instruction being executed, or about to be.
+  std::uint32_t pc() const { return pc_; }
 
   int executing_coord() const { return own_coord >= 0 ? own_coord : coord; }
 

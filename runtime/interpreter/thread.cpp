@@ -72,4 +72,14 @@ double& Thread::outgoing(int i) {
   return stack_[base_ + running.program->frame_size + static_cast<std::size_t>(i)];
 }
 
+Flow Host::card(Thread& thread, bytecode::CardVerb, std::span<const double>) {
+  thread.set_host_fault({FaultKind::kNotSimulated, {}, "this is an instruction for an ACR1000 card, and the program runs on no card"});
+  return Flow::kFault;
+}
+
+double Host::relay(Thread& thread, double) {
+  thread.set_host_fault({FaultKind::kNotSimulated, {}, "this asks for a relay of an ACR1000 card, and the program runs on no card"});
+  return 0;
+}
+
 }  // namespace pmac::runtime

@@ -7,12 +7,17 @@
 namespace pmac::motion {
 namespace {
 
-/// Parts of a motor's acceleration and jerk that the path's own shape may take at its highest speed; the rest is for changes of the speed.
-constexpr double kSpeedShare = 0.998, kAccelShare = 0.9965, kJerkShare = 0.9;
+/// Parts of the square of a motor's limit of speed that are used: the tangent turns a little within a cell.
+constexpr double kSpeedShare = 0.998, kSpeedShareOnCurves = 0.996;
 constexpr double kTurn_rad = 0.05;    // of the tangent in one cell
 constexpr double kChange = 0.3;       // of the curvature in one cell, of its greatest,
 constexpr double kSlightTurn_rad = 0.01;   // where the tangent turns by more than this
-constexpr int kHalvings = 12;         // of a segment into cells
+constexpr double kShortestTime = 0.25;  // of a servo period: of cells that are made because of that
+constexpr double kOffJerk = 0.03, kOffAccel = 0.001;   // of the limits: what the curvature is off in the middle of a cell, taken as even
+constexpr int kHalvings = 30;         // of a segment into cells
+constexpr double kKink_rad = 0.1, kStraight_rad = 1e-9;
+constexpr double kUneven = 0.02;      // of the square of the program's speed in the middle, against its ends; halved so many times at most
+constexpr int kHalvingsForSpeed = 3;
 constexpr double kRest = 1e-4;        // and rests below this
 constexpr double kShortest_mu = 1e-9; // segments that move less do not move
 
@@ -62,24 +67,22 @@ Bend bend_of(const PathPlace& from, const PathPlace& to) {
 
 }  // namespace
 
-JerkPath::JerkPath(std::vector<MotorLimits> limits, double servo_period_ms) : limits_(std::move(limits)) {
-  constexpr double kUnfelt = 0.002, kPart = 0.01;
-  double accel = 1e300, jerk = 1e300;
+JerkPath::JerkPath(std::vector<MotorLimits> limits, double servo_period_ms) : limits_(std::move(limits)), servo_period_ms_(servo_period_ms) {
+  constexpr double kUnfelt = 0.005;
+  double speed_mu_ms = 1e300;   // that the limits let build up in a servo period
   for (const MotorLimits& limit : limits_) {
-    if (limit.inv_amax_ms2_mu > 0) accel = std::min(accel, 1 / limit.inv_amax_ms2_mu);
-    if (limit.inv_jmax_ms3_mu > 0) jerk = std::min(jerk, 1 / limit.inv_jmax_ms3_mu);
+    if (limit.inv_amax_ms2_mu > 0) speed_mu_ms = std::min(speed_mu_ms, servo_period_ms / limit.inv_amax_ms2_mu);
+    if (limit.inv_jmax_ms3_mu > 0) speed_mu_ms = std::min(speed_mu_ms, servo_period_ms * servo_period_ms / limit.inv_jmax_ms3_mu);
   }
-  const double unfelt_mu_ms = kUnfelt * std::min(accel * servo_period_ms, jerk * servo_period_ms * servo_period_ms);
-  if (!(unfelt_mu_ms > 0 && unfelt_mu_ms < 1e100)) return;
-  sharpest_mu_ = kPart * std::min(accel, 1e100) / (unfelt_mu_ms * unfelt_mu_ms);
-  sharpest_rate_ = kPart * std::min(jerk, 1e100) / (unfelt_mu_ms * unfelt_mu_ms * unfelt_mu_ms);
+  if (speed_mu_ms > 1e100) return;
+  unfelt_mu_ms_ = kUnfelt * speed_mu_ms;
+  unfelt_mu_ = unfelt_mu_ms_ * servo_period_ms;
 }
 
 void JerkPath::clear() {
   cells_.clear();
   segments_.clear();
   first_cell_ = first_segment_ = 0;
-  end_mu_ = 0;
 }
 
 /// Derivatives at at_ms, seen from the side of toward_ms: where the program rests the direction is that of leaving or arriving.
@@ -89,24 +92,24 @@ PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms
   const double seen_ms = rests ? at_ms + kInside * (toward_ms - at_ms) : at_ms, speed = std::sqrt(speed2_at(segment, seen_ms));
   PathPlace result;
   result.max_speed2 = speed2_at(segment, at_ms);
-  double along = 0;
+  double along = 0, steady2 = 1e300;
   for (const MotorCubic& q : segment.motor) along += q.velocity(seen_ms) / speed * q.acceleration(seen_ms);
   for (std::size_t m = 0; m < segment.motor.size(); ++m) {
     const MotorCubic& q = segment.motor[m];
-    const double tangent = q.velocity(seen_ms) / speed, curvature = std::clamp((q.acceleration(seen_ms) - tangent * along) / (speed * speed), -sharpest_mu_, sharpest_mu_);
+    const double tangent = q.velocity(seen_ms) / speed, curvature = (q.acceleration(seen_ms) - tangent * along) / (speed * speed);
     result.tangent.push_back(tangent);
     result.curvature_mu.push_back(curvature);
     if (m >= limits_.size()) continue;
     const double speed_limit = limits_[m].max_speed_mu_ms, inv_accel = limits_[m].inv_amax_ms2_mu / share;
-    if (speed_limit > 0 && tangent != 0) result.max_speed2 = std::min(result.max_speed2, kSpeedShare * speed_limit * speed_limit / (tangent * tangent));
-    if (inv_accel > 0 && curvature != 0) result.max_speed2 = std::min(result.max_speed2, kAccelShare / (inv_accel * std::abs(curvature)));
+    if (speed_limit > 0 && tangent != 0) result.max_speed2 = std::min(result.max_speed2, (curvature == 0 ? kSpeedShare : kSpeedShareOnCurves) * speed_limit * speed_limit / (tangent * tangent));
+    if (inv_accel > 0 && curvature != 0) steady2 = std::min(steady2, 1 / (inv_accel * std::abs(curvature)));
   }
+  result.steady_speed2 = std::min(result.max_speed2, steady2);
   return result;
 }
 
 void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2) {
   PathCell cell;
-  cell.from_mu = end_mu_;
   cell.length_mu = length_between(segment, from_ms, to_ms);
   cell.from_ms = from_ms;
   cell.accel_share = share;
@@ -115,31 +118,57 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   cell.start = place(segment, from_ms, to_ms, share);
   cell.end = place(segment, to_ms, from_ms, share);
   cell.start.max_speed2 = std::min(cell.start.max_speed2, start_speed2);
-  for (std::size_t m = 0; m < cell.start.tangent.size(); ++m) {
-    const double rate = std::clamp((cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu, -sharpest_rate_, sharpest_rate_);
-    cell.curvature_rate.push_back(rate);
-    const double inv_jerk = m < limits_.size() ? limits_[m].inv_jmax_ms3_mu : 0;
-    if (inv_jerk <= 0 || rate == 0) continue;
-    const double speed = std::cbrt(kJerkShare / (inv_jerk * std::abs(rate)));
-    cell.start.max_speed2 = std::min(cell.start.max_speed2, speed * speed);
-    cell.end.max_speed2 = std::min(cell.end.max_speed2, speed * speed);
-  }
-  constexpr double kKink = 0.1;
-  const bool kinks = !cells_.empty() && !cells_.back().stops && bend_of(cells_.back().end, cell.start).turn_rad > kKink;
-  if (kinks && !(start_speed2 < 1e299)) stop_here();   // a bend too small for a cell
-  end_mu_ = cell.end_mu();
+  judge(cell);
+  const bool follows = !cells_.empty() && !cells_.back().stops;
+  const bool kinks = follows && bend_of(cells_.back().end, cell.start).turn_rad > kKink_rad && !(start_speed2 < 1e299);
+  const double slow2 = std::max(unfelt_mu_ms_ * unfelt_mu_ms_, 1e-30);
+  if (kinks || cell.start.max_speed2 <= slow2) stop_here();   // a bend too small for a cell
+  cell.stops = cell.end.max_speed2 <= slow2 || bend_of(cell.start, cell.end).turn_rad > kKink_rad;
   cells_.push_back(std::move(cell));
 }
 
-/// Halves until the derivatives change evenly.
+/// What the motors' limits come to along the cell.
+void JerkPath::judge(PathCell& cell) const {
+  const Bend bend = bend_of(cell.start, cell.end);
+  cell.is_straight = bend.turn_rad < kStraight_rad;
+  for (std::size_t m = 0; m < std::min(limits_.size(), cell.start.tangent.size()); ++m) {
+    const double tangent = std::max(std::abs(cell.start.tangent[m]), std::abs(cell.end.tangent[m])), inv_jerk = limits_[m].inv_jmax_ms3_mu;
+    cell.inv_accel_ms2_mu = std::max(cell.inv_accel_ms2_mu, tangent * limits_[m].inv_amax_ms2_mu / cell.accel_share);
+    cell.inv_jerk_ms3_mu = std::max(cell.inv_jerk_ms3_mu, tangent * inv_jerk);
+    const double rate = std::abs(cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu;
+    if (inv_jerk <= 0 || rate == 0) continue;
+    const double steady2 = std::pow(inv_jerk * rate, -2.0 / 3);
+    cell.start.steady_speed2 = std::min(cell.start.steady_speed2, steady2);
+    cell.end.steady_speed2 = std::min(cell.end.steady_speed2, steady2);
+  }
+}
+
+/// Whether motion as fast as the place allows would have much more acceleration or jerk than with a curvature that changes evenly. Not in
+/// cells that take less than a servo period, for the acceleration a part of it.
+bool JerkPath::bends_unevenly(const PathPlace& from, const PathPlace& middle, const PathPlace& to, double length_mu) const {
+  const double speed2 = std::min({from.steady_speed2, middle.steady_speed2, to.steady_speed2}), speed = std::sqrt(speed2);
+  if (length_mu < kShortestTime * speed * servo_period_ms_) return false;
+  double off_accel = 0, off_jerk = 0;
+  for (std::size_t m = 0; m < std::min(limits_.size(), from.tangent.size()); ++m) {
+    const double off = std::abs(middle.curvature_mu[m] - (from.curvature_mu[m] + to.curvature_mu[m]) / 2) * speed2;
+    off_accel = std::max(off_accel, off * limits_[m].inv_amax_ms2_mu);
+    off_jerk = std::max(off_jerk, 4 * off * speed / length_mu * limits_[m].inv_jmax_ms3_mu);
+  }
+  return off_accel > kOffAccel || (off_jerk > kOffJerk && length_mu > speed * servo_period_ms_);
+}
+
+/// Halves until the derivatives and the program's speed change evenly, or it is too short for bends to be felt.
 void JerkPath::add_cells(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2, int halvings) {
   const double middle_ms = (from_ms + to_ms) / 2, length_mu = length_between(segment, from_ms, to_ms);
   if (!(length_mu > kShortest_mu)) return;   // nothing moves there
   const PathPlace from = place(segment, from_ms, middle_ms, share), to = place(segment, to_ms, middle_ms, share);
   const Bend bend = bend_of(from, to);
   const bool bends = bend.turn_rad > kTurn_rad || (bend.turn_rad > kSlightTurn_rad && bend.change > kChange);
-  const bool rests = speed2_at(segment, from_ms) == 0 || speed2_at(segment, to_ms) == 0;
-  if (halvings == 0 || length_mu < 4 * kShortest_mu || (!bends && !(halvings == kHalvings && !rests && bend.turn_rad > 0)))
+  const double mean2 = (speed2_at(segment, from_ms) + speed2_at(segment, to_ms)) / 2;
+  const bool uneven = halvings > kHalvings - kHalvingsForSpeed && std::abs(speed2_at(segment, middle_ms) - mean2) > kUneven * mean2;
+  const bool whole_turn = halvings == kHalvings && bend.turn_rad > kStraight_rad && !uneven;   // and back again
+  const bool off = bend.turn_rad > kStraight_rad && bends_unevenly(from, place(segment, middle_ms, to_ms, share), to, length_mu);
+  if (halvings == 0 || length_mu < 2 * unfelt_mu_ || length_mu < 4 * kShortest_mu || (!bends && !uneven && !whole_turn && !off))
     return add_cell(segment, from_ms, to_ms, share, start_speed2);
   add_cells(segment, from_ms, middle_ms, share, start_speed2, halvings - 1);
   add_cells(segment, middle_ms, to_ms, share, 1e300, halvings - 1);
@@ -181,13 +210,14 @@ void JerkPath::forget_before(std::size_t cell) {
   }
 }
 
-double JerkPath::programmed_ms(std::size_t index, double at_mu) const {
+double JerkPath::programmed_ms(std::size_t index, double offset_mu) const {
   const PathCell& c = cell(index);
   const Segment& owner = segment(c.segment);
-  const double wanted_mu = std::clamp(at_mu - c.from_mu, 0.0, c.length_mu);
-  double low = c.from_ms, high = c.to_ms, at_ms = low + (high - low) * wanted_mu / c.length_mu;
+  if (offset_mu <= 0) return c.from_ms;
+  if (offset_mu >= c.length_mu) return c.to_ms;
+  double low = c.from_ms, high = c.to_ms, at_ms = low + (high - low) * offset_mu / c.length_mu;
   for (int i = 0; i < 60; ++i) {
-    const double off_mu = length_between(owner, c.from_ms, at_ms) - wanted_mu;
+    const double off_mu = length_between(owner, c.from_ms, at_ms) - offset_mu;
     (off_mu > 0 ? high : low) = at_ms;
     const double speed = std::sqrt(speed2_at(owner, at_ms));
     double next_ms = speed > 0 ? at_ms - off_mu / speed : (low + high) / 2;

@@ -14,30 +14,28 @@
 
 namespace pmac::motion {
 
-/// A place on the path: dq/dsigma and its derivative of every motor, and the square of the highest speed there.
+/// A place on the path: dq/dsigma and its derivative of every motor, and squares of speeds there.
 struct PathPlace {
   std::vector<double> tangent;        // [motor]
   std::vector<double> curvature_mu;   // [motor] 1/mu
-  double max_speed2 = 0;              // mu^2/ms^2
+  double max_speed2 = 0;              // mu^2/ms^2: the program's and the motors' limits of speed
+  double steady_speed2 = 0;           // about the highest that the other limits leave as well
 };
 
 struct PathCell {
-  double from_mu = 0, length_mu = 0;  // along the path
+  double length_mu = 0;               // along the path
   double from_ms = 0, to_ms = 0;      // programmed time in the segment
   std::size_t segment = 0;            // number, from the start of the path on
   PathPlace start, end;
-  std::vector<double> curvature_rate; // [motor] 1/mu^2
+  bool is_straight = false;
+  double inv_accel_ms2_mu = 0, inv_jerk_ms3_mu = 0;   // of the tightest motor along the tangents; 0: off
   double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
-  double end_mu() const { return from_mu + length_mu; }
 };
-
-/// Where something is: a cell, and the length along the path.
-struct CellPoint { std::size_t cell = 0; double at_mu = 0; };
 
 class JerkPath {
  public:
-  /// Sharper bends than a speed can make felt at servo rate are not told from a bend that sharp.
+  /// Bends so small that running through them cannot be seen at servo rate are places to stop at.
   JerkPath(std::vector<MotorLimits> limits, double servo_period_ms);
 
   void clear();
@@ -54,19 +52,21 @@ class JerkPath {
   const Segment& segment(std::size_t i) const { return segments_[i - first_segment_]; }
   const std::vector<MotorLimits>& limits() const { return limits_; }
 
-  /// Programmed time in its segment of a place in the cell. Exact to rounding.
-  double programmed_ms(std::size_t cell, double at_mu) const;
+  /// Programmed time in its segment of a place so far from the start of the cell. Exact to rounding.
+  double programmed_ms(std::size_t cell, double offset_mu) const;
 
  private:
   PathPlace place(const Segment& segment, double at_ms, double toward_ms, double share) const;
+  void judge(PathCell& cell) const;
+  bool bends_unevenly(const PathPlace& from, const PathPlace& middle, const PathPlace& to, double length_mu) const;
   void add_cells(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2, int halvings);
   void add_cell(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2);
   std::vector<MotorLimits> limits_;
-  double sharpest_mu_ = 1e300, sharpest_rate_ = 1e300;   // of curvature, 1/mu, and of its rate, 1/mu^2
+  double servo_period_ms_;
+  double unfelt_mu_ = 0, unfelt_mu_ms_ = 0;   // length and speed that cannot be seen at servo rate
   std::deque<PathCell> cells_;
   std::deque<Segment> segments_;
   std::size_t first_cell_ = 0, first_segment_ = 0;
-  double end_mu_ = 0;
 };
 
 }  // namespace pmac::motion

@@ -1,72 +1,83 @@
-// Motion along the path with limited jerk, in steps of constant change of acceleration. From every state that is taken a stop is known (the
-// braking plan) that keeps all limits and ends inside the known path; so there is always a way to go on.
-//
-//    j  ^ +J ____                          one step: the largest j after which
-//       |        |____                     such a stop exists is taken; where that is
-//       | -J          |____  ...           none but the plan itself, the plan is followed
-//
-// Limits of motor m, with T, K, K' the derivatives of its position over the path's length (jerk_path.h), v, a, j of the motion along it:
-//
-//   |T v| <= V_m      |K v^2 + T a| <= A_m      |K' v^3 + 3 K v a + T j| <= J_m
+// A plan for the known path up to where motion comes to rest: at the next stop, or where the known path ends. It is divided into cells of
+// about equal time, and the fastest profile through them is solved for (jerk_profile.h); cells in which the acceleration turns out to change
+// much are divided, and it is solved again. When more of the path is known, what is not yet
+// executed is planned anew; the new plan counts only if it keeps all limits, else the old one is followed, which ends at rest. From rest
+// there is always a plan: any profile, made slow enough.
 #pragma once
 
 #include <vector>
 
 #include "runtime/motion/jerk_path.h"
+#include "runtime/motion/jerk_profile.h"
 
 namespace pmac::motion {
 
-struct JerkStep { double duration_ms = 0, jerk_mu_ms3 = 0; };
-
+/// Where motion is: in a cell of the path, so far from its start. slope: change of the square of the speed over length.
 struct PathState {
-  CellPoint at;
-  double speed_mu_ms = 0, accel_mu_ms2 = 0;
+  std::size_t cell = 0;
+  double offset_mu = 0, speed2 = 0, slope = 0;
+};
+
+/// One cell of the plan, all of it in one cell of the path.
+struct PlannedCell {
+  std::size_t cell = 0;
+  double from_mu = 0, to_mu = 0;
 };
 
 class JerkPlan {
  public:
-  /// step_ms: longest step.
-  JerkPlan(const JerkPath& path, double step_ms) : path_(path), step_ms_(step_ms) {}
+  /// The path outlives the plan.
+  JerkPlan(const JerkPath& path, double servo_period_ms);
 
-  void set_step(double step_ms) { step_ms_ = step_ms; }
+  /// Motion rests at the beginning of this cell.
+  void start_at(std::size_t cell);
+  /// Plans from the present state on, with all of the path that is known.
+  void renew();
+  bool is_done() const { return next_ + 1 >= profile_.nodes(); }
+  /// The plan ends at a stop of the path: no more can be gained by knowing more.
+  bool ends_at_stop() const;
 
-  /// The next step from the state and the state after it; a step of no duration where motion has come to the end of what is known, or
-  /// to a stop.
-  JerkStep next(PathState& state);
-  /// Motion starts from rest in a cell; what was planned is forgotten.
-  void restart() { plan_.clear(); used_ = 0; follow_to_mu_ = -1; }
-  /// More of the path is known than at the last call.
-  void path_grew() { if (end_binds_) follow_to_mu_ = -1; }
+  /// What lies further ahead has no effect on the present motion.
+  double felt_ms() const { return felt_ms_; }
+
+  const PathState& state() const { return state_; }
+  const PlannedCell& next_cell() const { return cells_[next_]; }
+  /// Goes through the next cell.
+  CellMotion advance();
 
  private:
-  struct Trouble { double at_mu = 0, max_speed_mu_ms = 0; bool at_end = false; };
-  bool advance(PathState& state, const JerkStep& step);
-  double whole_step_ms(double speed_change, double accel) const;
-  bool peak_passes(const PathState& state, double jerk);
-  bool passes(const PathCell& cell, double at_mu, double speed, double accel, double jerk);
-  /// How acceleration and jerk are held to the motors' limits: each motor its own, or the root of the sum of the squares of all, in limits.
-  /// The second holds on a curve whichever way it turns.
-  enum class Within { kEach, kTogether };
-  struct Ranges { double accel_low, accel_high, jerk_low, jerk_high; };
-  bool ranges(const PathState& state, Within within, Ranges& out) const;
-  void narrow_to_end(const PathState& state, const JerkStep& step, Within within, Ranges& ranges) const;
-  bool brake_to(PathState& state, double speed_mu_ms, Within within, std::vector<JerkStep>& steps);
-  bool coast_to(PathState& state, double to_mu, std::vector<JerkStep>& steps);
-  bool pass(PathState& state, const Trouble& trouble, Within within, std::vector<JerkStep>& steps);
-  bool stop_within(const PathState& state, Within within, std::vector<JerkStep>& steps);
-  bool stop_from(const PathState& state, std::vector<JerkStep>& steps);
-  bool try_step(const PathState& state, const JerkStep& step);
-  bool try_fastest(const PathState& state);
-  double top_speed(const PathState& state) const;
+  struct Stretch { std::vector<double> speed2, start_mu; double length_mu = 0; };   // [end of a path cell] about the speed, and length before it
+  std::size_t end_of_stretch() const;
+  void estimate(std::size_t end);
+  double estimate_at(std::size_t cell, double offset_mu) const;
+  double rest_cell_mu(std::size_t cell, double time_ms) const;
+  double finest_step_ms() const;
+  std::size_t kept_cells() const;
+  void divide(double step_ms, std::size_t kept, std::size_t end);
+  void divide_cell(std::size_t cell, double from_mu, bool starts, bool ends, double step_ms);
+  void take_felt();
+  void guess(std::size_t kept);
+  bool solve_refined();
+  bool refine();
+  bool is_coarse(std::size_t i, double finest_ms) const;
+  void make_problem();
+  void add_rows(const PlannedCell& planned);
+  bool accept(bool solved);
+  void slow_down();
 
   const JerkPath& path_;
-  double step_ms_;
-  std::vector<JerkStep> plan_;        // the stop from here; the first used_ steps are behind
-  std::size_t used_ = 0;
-  std::vector<JerkStep> trial_, found_;
-  double follow_to_mu_ = -1;          // what follows this place keeps the plan from being bettered
-  bool end_binds_ = false;            // and that is the end of the known path
-  Trouble trouble_;                   // why the last trial failed
+  double shortest_step_ms_;
+  PathState state_;
+  std::vector<PlannedCell> cells_, new_cells_;   // of the plan, and of the one that is tried
+  std::vector<PlannedCell> parts_;
+  std::vector<double> guess_speed2_, part_speed2_;   // [end of a new cell]
+  Profile profile_, new_profile_;
+  std::size_t next_ = 0;
+  double felt_ms_ = 1e300;
+  std::size_t first_ = 0;             // cell of the path in which the stretch starts
+  Stretch stretch_;
+  ProfileProblem problem_;
+  ProfileSolver solver_;
 };
 
 }  // namespace pmac::motion

@@ -47,14 +47,6 @@ void shift_lines(bytecode::Module& module, int by) {
   }
 }
 
-/// Prints what the session has to say and forgets it. True if there were errors.
-bool print_diagnostics(compiler::Session& session) {
-  const bool errors = session.diagnostics().has_errors();
-  for (const source::Diagnostic& diagnostic : session.diagnostics().take())
-    std::fputs(source::format_text(session.sources(), diagnostic, use_color()).c_str(), stderr);
-  return errors;
-}
-
 int compile_pending(std::vector<compiler::InputFile>& pending, compiler::Session& session, runtime::Machine& machine) {
   if (pending.empty()) return kExitOk;
   auto module = session.compile(pending);
@@ -95,6 +87,13 @@ int load_object(const std::string& name, const std::string& bytes, compiler::Ses
 }
 
 }  // namespace
+
+bool print_diagnostics(compiler::Session& session) {
+  const bool errors = session.diagnostics().has_errors();
+  for (const source::Diagnostic& diagnostic : session.diagnostics().take())
+    std::fputs(source::format_text(session.sources(), diagnostic, use_color()).c_str(), stderr);
+  return errors;
+}
 
 bool read_file(const std::string& name, std::string& bytes) {
   std::error_code error;

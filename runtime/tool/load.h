@@ -13,6 +13,9 @@ namespace pmac::tool {
 /// Loads the files of the options into the machine. Returns an exit code; messages go to standard error.
 int load_files(const RunOptions& options, compiler::Session& session, runtime::Machine& machine);
 
+/// Prints what the session has to say on standard error and forgets it. True if there were errors.
+bool print_diagnostics(compiler::Session& session);
+
 /// Where the first error of an on-line text stands; line 0: nowhere. before: lines in front of the text.
 struct ErrorPlace { int line = 0, column = 0; int before = 0; };
 

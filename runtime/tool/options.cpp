@@ -105,6 +105,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--ramp", ramp, "ramp rule: power adds Ts to Ta, turbo takes Ta as the whole ramp")->check(CLI::IsMember({"power", "turbo"}))->capture_default_str();
   app.add_flag("--limit-jerk", o.limit_jerk, "buffered lookahead keeps Motor[].InvJmax as well");
   add_kinematics_options(app, o);
+  add_card_options(app, o.cards);
   add_drive_options(app, o);
   app.add_flag("--console", o.console, "read on-line commands from standard input and answer each line");
   app.add_option("--console-step", o.console_step_ms, "simulated time in ms that passes after each line")->type_name("MS")->check(CLI::Range(0.0, 1e9))->capture_default_str();
@@ -140,6 +141,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   }
   if (const std::string bad = check_seconds(max_time); !bad.empty()) return usage("--max-time: " + bad);
   o.max_time_s = std::stod(max_time);
+  o.max_time_given = app.count("--max-time") > 0;
   for (const std::string& define : defines) {
     const std::size_t equals = define.find('=');
     o.defines.emplace_back(define.substr(0, equals), equals == std::string::npos ? "1" : define.substr(equals + 1));

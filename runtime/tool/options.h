@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/motion/types.h"
+#include "runtime/tool/acr_options.h"
 
 namespace pmac::tool {
 
@@ -31,6 +32,7 @@ struct RunOptions {
   std::vector<std::pair<double, std::string>> timed_commands; // --at seconds, text
   std::optional<double> until_s;                              // absent: until idle
   double max_time_s = 3600;
+  bool max_time_given = false;
   std::uint64_t max_instructions = 20'000'000'000;
   std::uint64_t max_moves = 1'000'000'000;
   std::uint64_t max_memory_mib = 8192;
@@ -54,6 +56,7 @@ struct RunOptions {
   std::string drive;                                          // --drive NAME, and NAME=VALUE after the colon
   std::vector<std::pair<std::string, std::string>> drive_settings;
   std::string drive_record;                                   // table of what the simulated drive did
+  CardRunOptions cards;                                       // of ACR1000 runs
 };
 
 inline constexpr int kExitOk = 0, kExitProgramError = 1, kExitUsage = 2, kExitFault = 3, kExitLimit = 4, kExitInternal = 70,

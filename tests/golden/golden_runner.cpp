@@ -1,5 +1,7 @@
 // Runs every program below this folder as its first line says, `// run: pmacc --emit=ir`, and compares:
+// (ACR1000 files are .acr, and their first line begins with `; run:`.)
 //   <name>.pmc      standard output with <name>.expect
+//   <name>.mcx      a register script; its first line is `; run: pmac-run --stats`
 //   bad_<name>.pmc  exit code 1, and the errors with the comments `// error: text` of their lines, no more and no fewer
 // In both, `// warning: text` comments are compared with the warnings. Arguments behind the tool are options; the program itself
 // comes last, and <other> files may be named (they are looked up beside the program).
@@ -85,8 +87,8 @@ void compare_messages(const std::string& source, const Ran& ran, const std::stri
 }
 
 std::string command_of(const std::string& source, const fs::path& program) {
-  const std::string lead = "// run: ";
   const std::string first = source.substr(0, source.find('\n'));
+  const std::string lead = first.starts_with(';') ? "; run: " : "// run: ";  // of ACR1000 files and register scripts
   REQUIRE(first.substr(0, lead.size()) == lead);
   return std::string(PMAC_BIN_DIR) + "/" + first.substr(lead.size()) + " '" + program.filename().string() + "'";
 }
@@ -107,7 +109,7 @@ void check_program(const fs::path& program) {
 std::vector<fs::path> programs() {
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(PMAC_GOLDEN_DIR))
-    if (entry.path().extension() == ".pmc") found.push_back(entry.path());
+    if (entry.path().extension() == ".pmc" || entry.path().extension() == ".acr" || entry.path().extension() == ".mcx") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -1,4 +1,5 @@
 #include "tests/reference/random_module.h"
+#include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
 #include "compiler/bytecode/function.h"
@@ -180,6 +181,10 @@ Instruction Maker::instruction(const Program& program, std::uint32_t pc, std::ui
     case OperandFormat::kControl: {
       const ControlVerb verb = any(ControlVerb::kCount);
       return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(3), static_cast<unsigned>(control_argument_count(verb)));
+    }
+    case OperandFormat::kCard: {
+      const CardVerb verb = any(CardVerb::kCount);
+      return Instruction::with_bc(op, static_cast<unsigned>(verb), reg(5), static_cast<unsigned>(card_verb_info(verb).argument_count));
     }
     case OperandFormat::kString:
     case OperandFormat::kPortString:

@@ -95,3 +95,30 @@ TEST_CASE("lookahead: limits that the program keeps leave its times alone", "[ac
   lookahead.finish();
   CHECK(lookahead.end_s() == Approx(end_s).epsilon(1e-3));
 }
+
+TEST_CASE("lookahead: lines and arcs of the contour keep their path and the limits of both axes", "[acr1000]") {
+  Bench bench;
+  bench.add({rates({10000, 0, 0, 0}), mov(20000, 0), circle(47124, 34142, {1, 20000, -20000, 0, 47124}), circle(47124, 68284, {1, 20000, -14142, 14142, 47124}), mov(20000, 68284), mov(68284, 0)});
+  bench.add({rates({10000, 0, 0, 0}), mov(20000, 20000), circle(47124, 34142, {1, 20000, 0, 20000, 47124}), circle(47124, 20000, {1, 20000, 14142, 14142, 47124}), mov(20000, 0), mov(68284, 0)});
+  constexpr double kPeriodS = 1e-3, kAccel = 40000;
+  PathLookahead lookahead(bench.system, {{8000, kAccel}, {8000, kAccel}}, kPeriodS, bench.taker);
+  bench.stretch = [&](double from, double to) { lookahead.stretch(from, to); };
+  bench.system.run({});
+  lookahead.finish();
+  for (const std::size_t axis : {0u, 1u}) {
+    const auto [speed, accel] = worst_of(bench.rows, axis, kPeriodS);
+    CHECK(speed <= 8000 * 1.001);
+    CHECK(accel <= kAccel * 1.001);
+  }
+  double worst = 0;
+  for (const Row& row : bench.rows) {
+    const double x = row.position[0], y = row.position[1];
+    const double lines = std::min({std::abs(x), std::abs(y), std::abs(x - 68284)});
+    const double arcs = std::min(std::abs(std::hypot(x - 20000, y - 20000) - 20000), std::abs(std::hypot(x - 48284, y - 20000) - 19999.81));
+    worst = std::max(worst, std::min(lines, arcs));
+  }
+  CHECK(worst < 0.3);   // what the end points are beside the arcs
+  // From rest to rest: two lines of 20000 and one of 68284 at 8000, arcs at most a little slower than 10000.
+  CHECK(lookahead.end_s() > 20.2532);
+  CHECK(lookahead.end_s() < 26);
+}

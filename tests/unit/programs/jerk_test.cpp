@@ -97,6 +97,100 @@ TEST_CASE("of two motors the tighter limit counts along a straight line", "[prog
   CHECK(worst.jerk <= 1.05);
 }
 
+TEST_CASE("a line in many short blocks is run as one line", "[programs][jerk]") {
+  const Limits x{500, 1, 0.02}, y{500, 1, 0.002};
+  for (const int blocks : {8, 250}) {   // of whole decimals: rounded end points would bend the line
+    std::string text = "F200\n";
+    for (int i = 1; i <= blocks; ++i) text += "X" + std::to_string(30.0 * i / blocks) + " Y" + std::to_string(40.0 * i / blocks) + "\n";
+    const ProgramBench bench = run(x, y, text);
+    INFO(blocks);
+    // Direction (0.6, 0.8): acceleration and jerk from Y, the speed from F.
+    const double best_ms = seven_phases_ms(50'000, {200, 1.25, 0.0025}), time_ms = bench.moves.back().end_ms - bench.moves.front().start_ms;
+    CHECK(time_ms <= 1.02 * best_ms);
+    CHECK(time_ms >= 0.999 * best_ms);
+    const Worst worst = worst_of(bench, x, y);
+    CHECK(worst.accel <= 1.001);
+    CHECK(worst.jerk <= 1.05);
+    CHECK(bench.joins.empty());
+  }
+}
+
+TEST_CASE("changes of the feed rate along a line are run as fast as the jerk allows", "[programs][jerk]") {
+  const Limits limits{500, 1, 0.02};
+  const ProgramBench bench = run(limits, limits, "F200 X60\nF50 X120\nF150 X180");
+  // From v to w without reaching the limit of acceleration or with it: |v - w| / A + A / J at their mean speed; the rest at constant speed.
+  const auto change_ms = [](double from, double to) { return std::abs(from - to) + 50; };
+  const auto leg_ms = [&](double length, double start, double speed, double end) {
+    double ramps_ms = 0, left = length;
+    for (const double other : {start, end}) {
+      if (other >= speed) continue;   // the ramp lies in the faster leg
+      ramps_ms += change_ms(other, speed);
+      left -= change_ms(other, speed) * (other + speed) / 2;
+    }
+    return ramps_ms + left / speed;
+  };
+  const double best_ms = leg_ms(60'000, 0, 200, 50) + leg_ms(60'000, 200, 50, 150) + leg_ms(60'000, 50, 150, 0);
+  const double time_ms = bench.moves.back().end_ms - bench.moves.front().start_ms;
+  CHECK(time_ms <= 1.005 * best_ms);   // it may even be shorter: braking until the slower leg and a little beyond
+  for (std::size_t i = 1; i < bench.motor_mu.size(); ++i)
+    if (bench.motor_mu[i - 1][1] > 60'000 && bench.motor_mu[i][1] < 120'000) CHECK(bench.motor_mu[i][1] - bench.motor_mu[i - 1][1] <= 1.001 * 50 * kPeriod_ms);
+  const Worst worst = worst_of(bench, limits, limits);
+  CHECK(worst.accel <= 1.001);
+  CHECK(worst.jerk <= 1.05);
+}
+
+TEST_CASE("cusps, where a blend nearly turns back on itself, keep the jerk limit", "[programs][jerk]") {
+  const Limits limits{500, 1, 0.02};
+  for (const char* ramps : {"ta0 ts20", "ta25 ts20", "ta3 ts30", "ta50 ts0"})
+    for (const char* offset : {"1", "0.01", "0.0001"}) {
+      const std::string y = offset;
+      const ProgramBench bench = run(limits, limits, std::string(ramps) + " F150 X20\nX0 Y" + y + "\nX20 Y0\nX0 Y" + y + "\nX3 Y5");
+      INFO(ramps << " " << offset);
+      const Worst worst = worst_of(bench, limits, limits);
+      CHECK(worst.speed <= 1.001);
+      CHECK(worst.accel <= 1.001);
+      CHECK(worst.jerk <= 1.05);
+      CHECK(bench.motor_mu.back()[1] == Approx(3000).margin(1e-3));
+      CHECK(bench.motor_mu.back()[2] == Approx(5000).margin(1e-3));
+    }
+}
+
+/// A circle at the speed at which its jerk v^3 / r^2 and its acceleration v^2 / r keep their limits in every direction, and ramps of the seven
+/// phases to and from it. A motion along a circle has to share the limits with the ramps, but may run faster along the diagonals.
+double steady_circle_ms(double radius, double feed, Limits l) {
+  const double v = std::min({feed, std::cbrt(l.jerk * radius * radius), std::sqrt(l.accel * radius)});
+  const double ramp_ms = v * l.jerk >= l.accel * l.accel ? v / l.accel + l.accel / l.jerk : 2 * std::sqrt(v / l.jerk);
+  return 2 * 3.14159265358979 * radius / v + ramp_ms;
+}
+
+TEST_CASE("circles take about as long as at their steady speed", "[programs][jerk]") {
+  const Limits limits{500, 1, 0.02};
+  for (const double radius : {0.2, 2.0, 20.0, 200.0}) {
+    const ProgramBench bench = run(limits, limits, "F200 circle1 X0 Y0 I" + std::to_string(radius));
+    INFO(radius);
+    CHECK(bench.moves.at(0).end_ms <= 1.07 * steady_circle_ms(1000 * radius, 200, limits));
+  }
+}
+
+TEST_CASE("with a window that covers the stop, planning in parts is planning the whole path", "[programs][jerk]") {
+  const Limits limits{500, 1, 0.02};
+  std::string path = "F200 ta20 ts5\n";
+  for (int i = 0; i < 12; ++i) path += "X" + std::to_string(5 * (i % 3)) + " Y" + std::to_string(4 * i) + "\ncircle1 X" + std::to_string(5 * (i % 3) + 3) + " Y" + std::to_string(4 * i + 1) + " R4\nlinear\n";
+  const auto time_ms = [&](const char* window) {
+    std::string text = set_up(limits, limits, path);
+    text.replace(text.find("LHDistance=400"), 14, window);
+    ProgramBench bench("a.pmc", text, pmac::motion::FineInterpolation::kThrough, true);
+    bench.run("&1 b1r");
+    const Worst worst = worst_of(bench, limits, limits);
+    CHECK(worst.accel <= 1.001);
+    CHECK(worst.jerk <= 1.05);
+    return bench.moves.back().end_ms;
+  };
+  const double whole_ms = time_ms("LHDistance=5000");
+  CHECK(time_ms("LHDistance=200") == Approx(whole_ms).epsilon(0.003));
+  CHECK(time_ms("LHDistance=20") > whole_ms);
+}
+
 TEST_CASE("a circle from rest to rest keeps the jerk limit everywhere", "[programs][jerk]") {
   const Limits limits{500, 1, 0.02};
   for (const double radius : {2.0, 20.0, 200.0}) {
