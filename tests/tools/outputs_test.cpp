@@ -53,7 +53,7 @@ TEST_CASE("option json holds status, time, moves, motors, outputs and faults", "
 TEST_CASE("option record-act shows where a motor with a plant is", "[tools]") {
   const Workspace w;
   w.write("lag.pmc", "&1 #1->1000X #2->1000Y\nSim.Motor[1].Plant=1 Motor[1].FatalFeLimit=0\nopen prog 1\nlinear abs ta100 ts0 F100\nX10 Y10\nclose\n");
-  REQUIRE(w.run("pmac-run", "lag.pmc -e '&1b1r' --until 0.5 --record r.csv --record-act").code == 0);
+  REQUIRE(w.run("pmac-run", "lag.pmc -e '&1b1r' --until 2 --record r.csv --record-act").code == 0);
   const auto rows = csv(w.read("r.csv"));
   CHECK(rows[0] == std::vector<std::string>{"time_s", "Motor[1].DesPos", "Motor[1].ActPos", "Motor[2].DesPos", "Motor[2].ActPos", "X", "Y"});
   bool lags = false;
