@@ -54,11 +54,24 @@ void write_file(const std::string& name, std::string_view bytes) {
   write_file(name, [&](const ByteWriter& write) { write(bytes); });
 }
 
+namespace {
+
+/// A pipe or a device stays what it is: it is written to, and not replaced.
+void write_to_device(const std::string& name, const std::function<void(const ByteWriter&)>& content) {
+  std::ofstream stream(name, std::ios::binary);
+  content([&](std::string_view bytes) { stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+  stream.close();
+  if (!stream) throw UsageError(fmt::format("cannot write {}", name));
+}
+
+}  // namespace
+
 void write_file(const std::string& name, const std::function<void(const ByteWriter&)>& content) {
   std::error_code error;
   const std::filesystem::path known = std::filesystem::canonical(name, error);  // a link keeps pointing at the file
   const std::string target = error ? name : known.string();
   const bool exists = !error;
+  if (exists && !std::filesystem::is_regular_file(target)) return write_to_device(name, content);
   const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
   std::ofstream stream(temporary, std::ios::binary);
   content([&](std::string_view bytes) { stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });

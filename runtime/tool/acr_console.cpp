@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "runtime/acr1000/image.h"
+#include "runtime/tool/options.h"
 
 namespace pmac::tool {
 namespace {
@@ -254,7 +255,8 @@ int run_card_console(const CardConsoleOptions& options) {
     std::fflush(stdout);
   });
   std::uint8_t bytes[65536];
-  for (bool going = true; going && std::ferror(stdout) == 0;) {
+  bool going = true;   // false: the time limit is reached
+  while (going && std::ferror(stdout) == 0) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     const int ready = ::poll(&input, 1, console.in_block() ? kPauseMs : -1);
     if (ready < 0) break;  // a signal
@@ -269,7 +271,11 @@ int run_card_console(const CardConsoleOptions& options) {
     }
     going = console.receive({bytes, static_cast<std::size_t>(count)});
   }
-  return 0;
+  if (std::ferror(stdout) != 0) {
+    std::fprintf(stderr, "pmac-run: standard output cannot be written\n");
+    return kExitUsage;
+  }
+  return going ? kExitOk : kExitLimit;
 }
 
 }  // namespace pmac::tool

@@ -9,6 +9,8 @@
 namespace pmac::tool {
 namespace {
 
+constexpr double kShortestPeriod_s = 1e-6;
+
 /// A number at the front of the text; what follows it is left in `rest`.
 std::optional<double> number_at(const std::string& text, std::string& rest) {
   char* end = nullptr;
@@ -42,11 +44,12 @@ void add_card_options(CLI::App& app, CardRunOptions& o) {
       ->allow_extra_args(false);
 }
 
+/// A time between samples; nullopt for what is none, and for less than a microsecond.
 std::optional<double> period_seconds(const std::string& text) {
   std::string unit;
   const auto value = number_at(text, unit);
   const double factor = unit.empty() || unit == "ms" ? 1e-3 : unit == "s" ? 1 : unit == "us" ? 1e-6 : 0;
-  if (!value || *value * factor <= 0) return std::nullopt;
+  if (!value || *value * factor < kShortestPeriod_s) return std::nullopt;
   // A thousand times the wanted number over 1000 is what the decimal text means; 0.001 * 1 alone may be off by a bit.
   return factor == 1e-3 ? *value / 1e3 : factor == 1e-6 ? *value / 1e6 : *value;
 }

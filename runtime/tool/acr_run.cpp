@@ -278,7 +278,7 @@ int CardRun::run(const Loaded& loaded, std::function<bool()> interrupted) {
     files_ = loaded.module->files;
   }
   const auto period = period_seconds(options_.cards.period);
-  if (!period) return usage(fmt::format("--period: '{}' is no time above 0", options_.cards.period));
+  if (!period) return usage(fmt::format("--period: '{}' is no time of a microsecond or more", options_.cards.period));
   period_s_ = *period;
   for (const acr1000::CardImage& image : image_.cards) add_card(image);
   if (const int code = add_streams(); code != kExitOk) return code;

@@ -126,6 +126,8 @@ int run_register_script(const RunOptions& options) {
   if (!wants_pulses) chip->set_closely_followed(kCloselyFollowed);
   bool finished = execute(script, *chip, options);
   std::vector<Problem> problems = script.problems;
+  const bool writes = std::any_of(script.items.begin(), script.items.end(), [](const ScriptItem& item) { return item.kind == ScriptItem::Kind::kWrite; });
+  if (!writes) problems.push_back({true, 1, 1, "this script writes no register; a write is a line such as  WR6 <- 1388h"});
   problems.insert(problems.end(), chip->problems().begin(), chip->problems().end());
   print_problems(name, text, problems);
   if (std::any_of(problems.begin(), problems.end(), [](const Problem& problem) { return problem.is_error; })) return kExitProgramError;

@@ -1,5 +1,6 @@
 // Bad input of every kind: a clear message, the right exit code, never a crash or a hang.
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <random>
 
 #include "tests/tools/run_shell.h"
@@ -215,4 +216,35 @@ TEST_CASE("a circle without segmentation is said to be a straight line", "[tools
   CHECK(r.code == 0);
   CHECK(contains(r.err, "a.pmc:4: warning"));
   CHECK(contains(r.err, "SegMoveTime"));
+}
+
+TEST_CASE("pmacc writes to a device and leaves it one", "[tools]") {
+  const Workspace w;
+  w.write("a.pmc", "open prog 1\nlinear\nX1\nclose\n");
+  std::filesystem::create_symlink("/dev/full", w.path("full.pmx"));
+  const ToolResult full = w.run("pmacc", "a.pmc -o full.pmx");
+  CHECK(full.code == 2);
+  CHECK(contains(full.err, "cannot write"));
+  CHECK(std::filesystem::is_character_file("/dev/full"));
+  CHECK(w.run("pmacc", "a.pmc -o /dev/null").code == 0);
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("a register script without a write is an error", "[tools]") {
+  const Workspace w;
+  for (const std::string& text : {std::string(), std::string("\0\1\2", 3), std::string("; a comment alone\n")}) {
+    w.write("n.mcx", text);
+    const ToolResult r = w.run("pmac-run", "n.mcx");
+    CHECK(r.code == 1);
+    CHECK(contains(r.err, "n.mcx:1:1: error: this script writes no register"));
+  }
+}
+
+TEST_CASE("a whole circle from a point of an axis is one drive command", "[tools]") {
+  const Workspace w;
+  w.write("q.pmc", "&1 #1->X #2->Y\nCoord[1].SegMoveTime=5\nopen prog 1\nnormal K-1 abs ta0 ts0 F1000\ncircle2 X0 Y0 I1000 J0\nclose\n");
+  const ToolResult r = w.run("pmac-run", "q.pmc -e '&1b1r' --drive mcx514 --emit=frames");
+  CHECK(r.code == 0);
+  CHECK(contains(r.out, "WR0 <- 0065h"));
+  CHECK_FALSE(contains(r.out, "WR0 <- 0061h"));
 }

@@ -145,8 +145,12 @@ bool Collector::make_arc(int coord, const motion::Curve& curve, double u0, doubl
   const auto center = pulses(coord, center_uu), start = point(u0), end = point(u1), later = point(u0 + 1e-3 * (u1 - u0));
   if (!center || !start || !end || !later) return false;
   std::vector<std::size_t> plane;
+  const auto leaves_chord = [&](std::size_t axis, double share) {
+    const double chord = (*start)[axis] + share * ((*end)[axis] - (*start)[axis]);
+    return std::abs(point(u0 + share * (u1 - u0)).value_or(*start)[axis] - chord) > kSamePath;
+  };
   for (std::size_t axis = 0; axis < kAxes; ++axis)
-    if (std::abs((*start)[axis] - (*center)[axis]) > kSamePath || std::abs(point((u0 + u1) / 2).value_or(*start)[axis] - ((*start)[axis] + (*end)[axis]) / 2) > kSamePath) plane.push_back(axis);
+    if (std::abs((*start)[axis] - (*center)[axis]) > kSamePath || leaves_chord(axis, 0.5) || leaves_chord(axis, 0.25)) plane.push_back(axis);
   if (plane.size() != 2) return false;
   item.plane = {plane[0], plane[1]};
   item.center = {(*center)[plane[0]], (*center)[plane[1]]};

@@ -53,7 +53,7 @@ class SilverlodeDrive : public Drive {
 };
 
 std::optional<std::string> SilverlodeDrive::check_axes() const {
-  if (!commanded_.moves()) return "no motor moves, there is nothing to encode; start a program with -e";
+  if (!commanded_.moves()) return "no motor moves, so there is nothing to encode";
   const std::size_t axes = commanded_.axes();
   for (const auto& [name, values] : {std::pair("max_speed", &settings_.max_speed_rpm), std::pair("max_accel", &settings_.max_accel_rpm_s)})
     if (values->size() != 1 && values->size() != axes) return fmt::format("{} has {} values for {} axes that move; give one, or one an axis", name, values->size(), axes);
