@@ -27,6 +27,7 @@ class Writer {
  private:
   const std::string& name(std::size_t card) const { return system_.cards[card].axis; }
   void line(const PathMove& move);
+  void check_end(const AxisPart& axis, const PathMove& move);
   void arc(const PathMove& move);
   void chords(const PathMove& move);
   void stand(const PathMove& move) { put(fmt::format("dwell {}", 1000 * move.times.total_s()), move); }
@@ -46,7 +47,11 @@ class Writer {
 
 std::string Writer::set_up() const {
   std::string text = fmt::format("&{}\n", system_.coord);
-  for (std::size_t k = 0; k < system_.cards.size(); ++k) text += fmt::format("#{}->{}\n", system_.first_motor + static_cast<int>(k), name(k));
+  for (std::size_t k = 0; k < system_.cards.size(); ++k) {
+    // A card that begins elsewhere than at 0: the motor is at 0 there.
+    const std::string offset = system_.cards[k].start == 0 ? std::string() : fmt::format("{:+}", -system_.cards[k].start);
+    text += fmt::format("#{}->{}{}\n", system_.first_motor + static_cast<int>(k), name(k), offset);
+  }
   const bool curves = std::any_of(system_.moves.begin(), system_.moves.end(), [](const PathMove& move) { return move.kind == PathKind::kArc; });
   text += fmt::format("Coord[{}].FeedTime=1000      // F is pulses a second\n", system_.coord);
   text += fmt::format("Coord[{}].SegMoveTime={}\n", system_.coord, curves ? 1 : 0);
@@ -98,6 +103,15 @@ void Writer::line(const PathMove& move) {
   stop_if_it_ends(move);
 }
 
+/// P29 ends a CIRCLE wherever the law has come to; a circle of a motion program is bent to end there.
+void Writer::check_end(const AxisPart& axis, const PathMove& move) {
+  constexpr double kRounded = 2;   // pulses: P29 and the arguments are whole
+  const double angle = axis.direction * axis.distance / axis.radius;
+  const double law = axis.from + axis.i * (std::cos(angle) - 1) + axis.j * std::sin(angle);
+  if (std::abs(axis.to - law) > kRounded)
+    diagnostics_.warning("ACR-W10", move.span, fmt::format("P29 is {:.0f} pulses from where the CIRCLE comes to; the card steps there, the arc of the motion program is bent to end there", std::abs(axis.to - law)));
+}
+
 void Writer::arc(const PathMove& move) {
   static constexpr struct { const char *right, *normal, *first, *second; } kPlanes[] = {{"X", "normal K-1", "I", "J"}, {"Y", "normal I-1", "J", "K"}, {"Z", "normal J-1", "K", "I"}};
   const AxisPart &right = move.axes[move.plane[0]], &up = move.axes[move.plane[1]];
@@ -108,6 +122,7 @@ void Writer::arc(const PathMove& move) {
   const double to_centre_right = 0 - right.i, to_centre_up = 0 - up.i;
   const double sweep = right.distance / right.radius, radius = std::hypot(right.i, right.j);
   const double speed = radius * sweep / move.times.length * move.times.speed;
+  for (const AxisPart* axis : {&right, &up}) check_end(*axis, move);
   const std::string turn = move.clockwise ? "circle1" : "circle2";
   const auto whole_turns = static_cast<int>(std::floor(sweep / (2 * std::numbers::pi) + 1e-6));
   const bool closed = right.from == right.to && up.from == up.to;
@@ -142,13 +157,11 @@ void Writer::chords(const PathMove& move) {
 }
 
 std::string Writer::program() {
-  std::string names, starts;
+  std::string names;
   for (std::size_t k = 0; k < system_.cards.size(); ++k) {
     names += (k ? "," : "") + name(k);
-    starts += fmt::format("{}{}({})", k ? " " : "", name(k), system_.cards[k].start);
   }
   out_ = fmt::format("open prog {}\n  abs({})\n  frax({})\n  ta 0 ts 0 td 0\n", system_.program, names, names);
-  if (std::any_of(system_.cards.begin(), system_.cards.end(), [](const CardPath& card) { return card.start != 0; })) out_ += "  pset " + starts + "\n";
   for (const PathMove& move : system_.moves) {
     switch (move.kind) {
       case PathKind::kStand: stand(move); break;

@@ -95,10 +95,20 @@ int fail(const std::string& message) {
   return kExitUsage;
 }
 
+/// What went wrong in the chip. True: something did.
+bool print_faults(const Chip& chip, const RunOptions& options) {
+  bool any = false;
+  for (const ChipEvent& event : chip.events()) {
+    if (!event.is_error) continue;
+    any = true;
+    std::fprintf(stderr, "%s:%d: fault at %.9f s: %s\n", options.files[0].c_str(), event.place.line, seconds(event.time), event.text.c_str());
+  }
+  return any;
+}
+
 /// Exit code and, for the report, its word.
 std::pair<int, std::string> outcome(const Chip& chip, bool finished, const RunOptions& options) {
-  for (const ChipEvent& event : chip.events())
-    if (event.is_error) std::fprintf(stderr, "%s:%d: fault at %.9f s: %s\n", options.files[0].c_str(), event.place.line, seconds(event.time), event.text.c_str());
+  print_faults(chip, options);
   if (!finished && g_stop) return {kExitInterrupted, "interrupted"};
   if (!finished) std::fprintf(stderr, "pmac-run: the time limit of %g s is reached (--max-time); a continuous drive ends by 56h or 57h\n", options.max_time_s);
   if (!finished) return {kExitLimit, "time-limit"};
@@ -130,7 +140,8 @@ int run_register_script(const RunOptions& options) {
   if (!writes) problems.push_back({true, 1, 1, "this script writes no register; a write is a line such as  WR6 <- 1388h"});
   problems.insert(problems.end(), chip->problems().begin(), chip->problems().end());
   print_problems(name, text, problems);
-  if (std::any_of(problems.begin(), problems.end(), [](const Problem& problem) { return problem.is_error; })) return kExitProgramError;
+  const bool wrong = std::any_of(problems.begin(), problems.end(), [](const Problem& problem) { return problem.is_error; });
+  if (wrong) return print_faults(*chip, options) ? kExitFault : kExitProgramError;  // a fault of the chip is what a refused write behind it comes from
   if (chip->drives().empty() && !chip->driving() && !options.quiet) std::fprintf(stderr, "pmac-run: %s drives nothing\n", name.c_str());
 
   if (wants_pulses && !g_stop) {

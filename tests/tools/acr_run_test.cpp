@@ -1,8 +1,11 @@
 // pmac-run with ACR1000 cards. Times of the contour are closed forms: 20000, 47124, 47124, 20000 and 68284 pulses at 10000 pulses/s.
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "tests/tools/run_shell.h"
 
@@ -329,4 +332,70 @@ TEST_CASE("ACR1000: random bytes as a stream never crash the run", "[tools]") {
     CHECK((r.code == 0 || r.code == 3 || r.code == 4));
     CHECK_NOTHROW(json::parse(r.out));
   }
+}
+
+namespace {
+
+using Points = std::vector<std::array<double, 2>>;
+
+/// Two columns of a table.
+Points path_of(const std::string& csv, std::size_t x, std::size_t y) {
+  Points points;
+  std::istringstream lines(csv);
+  std::string line, cell;
+  for (std::getline(lines, line); std::getline(lines, line);) {
+    std::vector<double> row;
+    for (std::istringstream cells(line); std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    points.push_back({row.at(x), row.at(y)});
+  }
+  return points;
+}
+
+double distance_to_segment(const std::array<double, 2>& p, const std::array<double, 2>& a, const std::array<double, 2>& b) {
+  const double dx = b[0] - a[0], dy = b[1] - a[1], length2 = dx * dx + dy * dy;
+  const double share = length2 > 0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length2, 0.0, 1.0) : 0.0;
+  return std::hypot(p[0] - a[0] - share * dx, p[1] - a[1] - share * dy);
+}
+
+/// Largest distance of a point from the path; both run the same way, so the nearest place is looked for near the last one.
+double largest_distance(const Points& points, const Points& path) {
+  double worst = 0;
+  std::size_t near = 0;
+  for (const auto& p : points) {
+    double best = 1e300;
+    std::size_t best_at = near;
+    for (std::size_t i = near > 20 ? near - 20 : 0; i + 1 < path.size() && i < near + 400; ++i)
+      if (const double d = distance_to_segment(p, path[i], path[i + 1]); d < best) best = d, best_at = i;
+    near = best_at;
+    worst = std::max(worst, best);
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("ACR1000: the motion program of --emit=pmc runs to the same contour within a pulse", "[tools]") {
+  const Workspace w;
+  w.write("start.acr", "AXIS X START=5000\n10 VEL 10000\n20 P28=10000\n30 MOV /10000\nAXIS Y START=-300\n10 VEL 10000\n20 P28=10000\n30 MOV /-400\n");
+  const std::vector<std::string> sets = {acr("4_contour.x.acr") + " " + acr("4_contour.y.acr"), acr("1_line.x.acr") + " " + acr("1_line.y.acr"), acr("3_circle.acr"), "start.acr"};
+  for (const std::string& set : sets) {
+    INFO(set);
+    REQUIRE(w.shell("pmacc --emit=pmc " + set + " > same.pmc").code == 0);
+    REQUIRE(w.run("pmac-run", set + " --record cards.csv --period 0.1").code == 0);
+    const ToolResult r = w.run("pmac-run", "same.pmc -e '&1 b1r' --record program.csv");
+    INFO(r.err);
+    REQUIRE(r.code == 0);
+    const Points cards = path_of(w.read("cards.csv"), 1, 2), motors = path_of(w.read("program.csv"), 3, 4);
+    REQUIRE(cards.size() > 500);
+    CHECK(largest_distance(motors, cards) < 1);
+    CHECK(std::hypot(motors.back()[0] - cards.back()[0], motors.back()[1] - cards.back()[1]) < 1e-6);
+  }
+}
+
+TEST_CASE("ACR1000: --emit=pmc says where P29 is not where the CIRCLE ends", "[tools]") {
+  const Workspace w;
+  w.write("bad.acr", "AXIS X\n10 VEL 1000:P28=15708:P29=-9000\n20 CIRCLE 1,10000,10000,0,15708\nAXIS Y\n10 VEL 1000:P28=15708:P29=-10000\n20 CIRCLE 1,10000,0,-10000,15708\n");
+  const ToolResult r = w.run("pmacc", "--emit=pmc bad.acr");
+  CHECK(r.code == 0);
+  CHECK(r.err.find("bad.acr:3:4: warning: P29 is 1000 pulses from where the CIRCLE comes to") != std::string::npos);
 }
