@@ -392,6 +392,16 @@ TEST_CASE("ACR1000: the motion program of --emit=pmc runs to the same contour wi
   }
 }
 
+TEST_CASE("ACR1000: two files for one axis are refused, not mixed", "[tools]") {
+  const Workspace w;
+  for (const char* name : {"a.x.acr", "b.x.acr"}) w.write(name, "10 VEL 1000\n20 MOV 500\n");
+  for (const char* tool : {"pmacc", "pmac-run"}) {
+    const ToolResult r = w.run(tool, "a.x.acr b.x.acr");
+    CHECK(r.code == 1);
+    CHECK(r.err.find("b.x.acr:1:1: error: another file has the program of axis X already") != std::string::npos);
+  }
+}
+
 TEST_CASE("ACR1000: --emit=pmc says where P29 is not where the CIRCLE ends", "[tools]") {
   const Workspace w;
   w.write("bad.acr", "AXIS X\n10 VEL 1000:P28=15708:P29=-9000\n20 CIRCLE 1,10000,10000,0,15708\nAXIS Y\n10 VEL 1000:P28=15708:P29=-10000\n20 CIRCLE 1,10000,0,-10000,15708\n");

@@ -107,6 +107,8 @@ void FileReader::card_line(const source::Span& one) {
 FileReader::Card* FileReader::current(const source::Span& span) {
   if (current_) return current_;
   guessed_ = file_axis_.empty();
+  const bool known = std::any_of(cards_.begin(), cards_.end(), [&](const Card& card) { return card.settings.axis == file_axis_; });
+  if (known) refuse(span, fmt::format("another file has the program of axis {} already; its lines would be replaced by these. Put them into one file, or begin this one with an AXIS line", file_axis_));
   return current_ = card_of(guessed_ ? free_axis() : file_axis_, span);
 }
 
