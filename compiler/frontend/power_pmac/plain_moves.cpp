@@ -89,31 +89,36 @@ class LineReader {
 
   /// [+-] digits [. digits], or [+-] . digits. What the grammar calls a number and has more to it is not plain.
   bool read_number() {
-    while (at_ < end_ && *at_ == ' ') ++at_;
-    const bool negative = at_ < end_ && *at_ == '-';
-    if (at_ < end_ && (*at_ == '-' || *at_ == '+')) ++at_;
-    const char* const begin = at_;
+    const char* at = at_;  // a local: it stays in a register
+    while (at < end_ && *at == ' ') ++at;
+    const bool negative = at < end_ && *at == '-';
+    if (at < end_ && (*at == '-' || *at == '+')) ++at;
+    const char* const begin = at;
     std::uint64_t digits = 0;
-    while (at_ < end_ && is_digit(*at_)) digits = digits * 10 + static_cast<unsigned>(*at_++ - '0');
-    const char* const point = at_;
+    const auto take_digits = [&] {
+      for (; at < end_ && is_digit(*at); ++at) digits = digits * 10 + static_cast<unsigned>(*at - '0');
+    };
+    take_digits();
+    const char* const point = at;
     std::size_t decimals = 0;
-    if (at_ < end_ && *at_ == '.') {
-      ++at_;
-      while (at_ < end_ && is_digit(*at_)) digits = digits * 10 + static_cast<unsigned>(*at_++ - '0');
-      decimals = static_cast<std::size_t>(at_ - point) - 1;
+    if (at < end_ && *at == '.') {
+      ++at;
+      take_digits();
+      decimals = static_cast<std::size_t>(at - point) - 1;
     }
-    const auto length = static_cast<std::size_t>(at_ - begin);
+    at_ = at;
+    const auto length = static_cast<std::size_t>(at - begin);
     const bool has_digits = point > begin || decimals > 0;
-    if (!has_digits || (at_ < end_ && goes_on(*at_))) return false;
+    if (!has_digits || (at < end_ && goes_on(*at))) return false;
     // up to 15 digits the quotient of two exact numbers is the nearest number, as from_chars gives it
     if (length <= 16 && digits < 1'000'000'000'000'000) value_ = static_cast<double>(digits) / kPowersOf10[decimals];
-    else if (std::from_chars(begin, at_, value_).ec != std::errc()) return false;
+    else if (std::from_chars(begin, at, value_).ec != std::errc()) return false;
     if (negative) value_ = -value_;
     return true;
   }
 
   /// A letter begins the next word, except e: that may be an exponent.
-  static bool goes_on(char c) { return c == '.' || c == '_' || c == 'e' || c == 'E'; }
+  static bool goes_on(char c) { return c == '.' || c == '_' || (c | 0x20) == 'e'; }
 
   const char* at_;
   const char* end_;
