@@ -6,7 +6,7 @@ namespace pmac::motion {
 
 Segment hermite_segment(const MotorNode& from, const MotorNode& to, const Row<double>& p0, const Row<double>& v0,
                         const Row<double>& p1, const Row<double>& v1) {
-  Segment segment{to.command, to.source, from.time_ms, to.time_ms - from.time_ms, {}};
+  Segment segment{to.command, to.source, from.time_ms, to.time_ms - from.time_ms, to.passed_ms, {}};
   segment.motor.resize(p0.size());
   for (std::size_t m = 0; m < p0.size(); ++m) segment.motor[m] = hermite_cubic(p0[m], v0[m], p1[m], v1[m], segment.duration_ms);
   return segment;

@@ -24,6 +24,7 @@ struct MotorNode {
   SourceLine source;
   Row<double> position_mu;
   NodeSide before, after;
+  double passed_ms = 0;                 // see Segment
   bool step = false;                    // the velocity steps here: the sides are not to be made equal
 };
 

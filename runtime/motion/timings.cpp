@@ -9,13 +9,6 @@ namespace {
 
 constexpr double kSamePlace_ms = 1e-6;
 
-/// Time since the start of the segment at which d of its programmed time has passed.
-double time_at(const TimedSegment& segment, double d) {
-  const double end_rate2 = segment.rate * segment.rate + 2 * segment.rate_slope * d;
-  const double rates = segment.rate + std::sqrt(std::max(0.0, end_rate2));
-  return rates > 0 ? 2 * d / rates : 0;
-}
-
 /// Places that differ by less are the same: little also where programmed time hardly runs.
 double same_place_ms(const TimedSegment& segment) {
   return kSamePlace_ms * std::min(1.0, segment.segment.duration_ms / segment.duration_ms);
@@ -78,9 +71,9 @@ void Timings::cover(const TimedSegment& segment) {
   for (Record& record : records_) {
     if (record.sync.programmed_ms > end_ms + kSamePlace_ms) break;
     const bool start_was_known = record.start.known;
-    cover_place(record.sync, segment, sync_on_segments_);
-    cover_place(record.start, segment, false);
-    cover_place(record.end, segment, false);
+    if (!record.sync.known) cover_place(record.sync, segment, sync_on_segments_);
+    if (!start_was_known) cover_place(record.start, segment, false);
+    if (record.end.given && !record.end.known) cover_place(record.end, segment, false);
     if (!start_was_known) note_start(record);
   }
   covered_programmed_ms_ = end_ms;
