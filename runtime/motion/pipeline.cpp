@@ -88,6 +88,7 @@ struct Pipeline::State {
   double earliest_ms = 0;               // start of the next sequence
   double sequence_ms = 0;               // start of this one
   bool in_sequence = false;
+  Move next;                            // being added
   PlannerOutput planned;
   std::vector<Segment> segments;
   std::vector<TimedSegment> timed;
@@ -193,7 +194,10 @@ void Pipeline::State::to_times(bool ends) {
       continue;
     }
     const double start_ms = sequence_ms + segment.start_ms, duration_ms = segment.duration_ms;
-    timed.push_back({std::move(segment), start_ms, duration_ms, 1, 0});
+    TimedSegment& next_timed = timed.emplace_back();
+    next_timed.segment = std::move(segment);
+    next_timed.start_ms = start_ms;
+    next_timed.duration_ms = duration_ms;
   }
   segments.clear();
   if (ends && lookahead) lookahead->finish(timed);
@@ -235,12 +239,11 @@ void Pipeline::observe(StageObservers observers) { state_->observers = std::move
 std::optional<Fault> Pipeline::add(const MotionCommand& command) {
   State& s = *state_;
   if (s.fault) return s.fault;
-  auto move = make_move(command, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics});
-  if (Fault* problem = std::get_if<Fault>(&move)) return std::move(*problem);
+  if (auto problem = make_move(command, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics}, s.next)) return problem;
   s.timeline.prune();
   s.timings.prune(s.timeline.sampled_ms());
   s.start_sequence();
-  s.planner.add(std::move(std::get<Move>(move)), s.config, s.planned);
+  s.planner.add(s.next, s.config, s.planned);
   return s.run_stages(false);
 }
 

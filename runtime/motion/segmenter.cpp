@@ -51,35 +51,36 @@ Segmenter::Segmenter(const PipelineConfig& config, const MotorKinematics& kinema
       longest_ms_(longest_line_ms(config, kinematics)) {}
 
 std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>& out) {
-  if (open_ && (piece.starts_at_rest || piece.step_at_start))
+  if (is_open_ && (piece.starts_at_rest || piece.step_at_start))
     if (auto fault = close_gap(out)) return fault;
-  if (open_ && piece.starts_at_rest)
+  if (is_open_ && piece.starts_at_rest)
     if (auto fault = finish(out)) return fault;
-  if (!open_)
+  if (!is_open_)
     if (auto fault = start_chain(piece)) return fault;
   enter_piece(piece);
   place_nodes(piece);
   for (const Place& place : places_)
     if (auto fault = add_node(piece, place, out)) return fault;
-  end_is_open_ = open_->time_ms != piece.start_ms + piece.duration_ms;
+  end_is_open_ = open_.time_ms != piece.start_ms + piece.duration_ms;
   previous_ = piece;
+  has_previous_ = true;
   return std::nullopt;
 }
 
 std::optional<Fault> Segmenter::finish(std::vector<Segment>& out) {
-  if (!open_) return std::nullopt;
+  if (!is_open_) return std::nullopt;
   if (auto fault = close_gap(out)) return fault;
-  fit_->add(std::move(*open_), out);
+  fit_->add(open_, out);
   fit_->finish(out);
-  open_.reset();
-  previous_.reset();
+  is_open_ = has_previous_ = false;
   return std::nullopt;
 }
 
 /// First node of a chain.
 std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
-  MotorNode node;
+  MotorNode& node = open_;
   node.time_ms = piece.start_ms;
+  node.passed_ms = 0;
   node.command = piece.command;
   node.source = piece.source;
   node.position_mu.resize(kinematics_.count());
@@ -92,7 +93,7 @@ std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
   fill_side(node.before, piece, 0, point);
   node.before.stretch = 0;
   node.before.z_rate = 0;
-  open_ = std::move(node);
+  is_open_ = true;
   origin_ms_ = piece.start_ms;
   next_grid_ = 1;
   end_is_open_ = false;
@@ -101,19 +102,19 @@ std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
 
 /// The far side of the open node is the beginning of this piece.
 void Segmenter::enter_piece(const PathPiece& piece) {
-  if (previous_ && !same_stretch(*previous_, piece)) {
+  if (has_previous_ && !same_stretch(previous_, piece)) {
     ++stretch_;
     stretch_start_ms_ = piece.start_ms;
   }
-  const bool is_new_side = !previous_ || piece.step_at_start || !kinematics_.is_linear();
-  const double local_ms = open_->time_ms - piece.start_ms;
+  const bool is_new_side = !has_previous_ || piece.step_at_start || !kinematics_.is_linear();
+  const double local_ms = open_.time_ms - piece.start_ms;
   if (is_new_side) {
     PathMotion point;
     evaluate(piece, local_ms, kinematics_.axes(), point);
-    fill_side(open_->after, piece, local_ms, point);
+    fill_side(open_.after, piece, local_ms, point);
   }
-  if (!is_new_side) open_->after = open_->before;
-  open_->step = open_->step || piece.step_at_start;
+  if (!is_new_side) open_.after = open_.before;
+  open_.step = open_.step || piece.step_at_start;
 }
 
 /// point: the path at local_ms.
@@ -144,8 +145,8 @@ void Segmenter::place_nodes(const PathPiece& piece) {
     const double time_ms = origin_ms_ + static_cast<double>(next_grid_) * step_ms;
     if (time_ms > end_ms + (uniform_ ? 0 : -kMinGap_ms)) break;
     ++next_grid_;
-    if (time_ms < open_->time_ms + kMinGap_ms && !uniform_) continue;
-    const double last_ms = places_.empty() ? open_->time_ms : piece.start_ms + places_.back().local_ms;
+    if (time_ms < open_.time_ms + kMinGap_ms && !uniform_) continue;
+    const double last_ms = places_.empty() ? open_.time_ms : piece.start_ms + places_.back().local_ms;
     if (passes && time_ms + step_ms - last_ms <= longest_ms_) {
       if (passed_ms == 0) passed_ms = time_ms;
       continue;
@@ -154,7 +155,7 @@ void Segmenter::place_nodes(const PathPiece& piece) {
     places_.back().passed_ms = std::exchange(passed_ms, 0.0);
   }
   if (uniform_) return;
-  if (end_ms - open_->time_ms >= kMinGap_ms) {
+  if (end_ms - open_.time_ms >= kMinGap_ms) {
     add_turn_nodes(piece, piece.duration_ms);
     places_.back().passed_ms = passed_ms;
   }
@@ -163,7 +164,7 @@ void Segmenter::place_nodes(const PathPiece& piece) {
 
 /// The node at end_ms, and before it as many as the turn of an arc asks for.
 void Segmenter::add_turn_nodes(const PathPiece& piece, double end_ms) {
-  const double start_ms = places_.empty() ? std::max(0.0, open_->time_ms - piece.start_ms) : places_.back().local_ms;
+  const double start_ms = places_.empty() ? std::max(0.0, open_.time_ms - piece.start_ms) : places_.back().local_ms;
   const double parts = uniform_ ? 1 : std::max(1.0, std::ceil(turn_rad(piece, start_ms, end_ms) / kMaxTurn_rad - 1e-9));
   for (double i = 1; i < parts; ++i) places_.push_back({start_ms + (end_ms - start_ms) * i / parts, 0});
   places_.push_back({end_ms, 0});
@@ -172,8 +173,9 @@ void Segmenter::add_turn_nodes(const PathPiece& piece, double end_ms) {
 std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out) {
   runtime::poll_interruption();
   const double local_ms = place.local_ms;
-  MotorNode node;
+  MotorNode& node = made_;
   node.passed_ms = place.passed_ms;
+  node.step = false;
   node.time_ms = local_ms == piece.duration_ms ? piece.start_ms + piece.duration_ms : piece.start_ms + local_ms;
   node.command = piece.command;
   node.source = piece.source;
@@ -183,8 +185,8 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& pl
   if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
-  fit_->add(std::move(*open_), out);
-  open_ = std::move(node);
+  fit_->add(open_, out);
+  std::swap(open_, made_);
   return std::nullopt;
 }
 
@@ -192,25 +194,24 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& pl
 std::optional<Fault> Segmenter::close_gap(std::vector<Segment>& out) {
   if (!end_is_open_) return std::nullopt;
   end_is_open_ = false;
-  const PathPiece& piece = *previous_;
+  const PathPiece& piece = previous_;
   const double end_ms = piece.start_ms + piece.duration_ms;
-  const bool is_first = open_->before.stretch == 0;
-  if (is_first || end_ms - open_->time_ms >= kMinGap_ms) return add_node(piece, {piece.duration_ms, 0}, out);
+  const bool is_first = open_.before.stretch == 0;
+  if (is_first || end_ms - open_.time_ms >= kMinGap_ms) return add_node(piece, {piece.duration_ms, 0}, out);
   PathMotion point;
   evaluate(piece, piece.duration_ms, kinematics_.axes(), point);
-  if (auto fault = kinematics_.position(point.position, open_->position_mu.data(), piece.source)) return fault;
-  open_->time_ms = end_ms;
-  fill_side(open_->before, piece, piece.duration_ms, point);
-  open_->after = open_->before;
+  if (auto fault = kinematics_.position(point.position, open_.position_mu.data(), piece.source)) return fault;
+  open_.time_ms = end_ms;
+  fill_side(open_.before, piece, piece.duration_ms, point);
+  open_.after = open_.before;
   return std::nullopt;
 }
 
 void Segmenter::abandon(std::vector<Segment>& out) {
-  if (!open_) return;
-  fit_->add(std::move(*open_), out);
+  if (!is_open_) return;
+  fit_->add(open_, out);
   fit_->finish(out);
-  open_.reset();
-  previous_.reset();
+  is_open_ = has_previous_ = false;
 }
 
 }  // namespace pmac::motion

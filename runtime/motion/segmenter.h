@@ -44,8 +44,11 @@ class Segmenter {
   std::unique_ptr<NodeFit> fit_;
   bool uniform_;                        // nodes on the grid only
   double longest_ms_;                   // of a segment on a straight line at constant speed, where nodes may be passed
-  std::optional<MotorNode> open_;       // last node; its far side is that of the next piece
-  std::optional<PathPiece> previous_;   // last piece
+  MotorNode open_;                      // last node; its far side is that of the next piece
+  bool is_open_ = false;                // there is one
+  MotorNode made_;                      // the one being made
+  PathPiece previous_;                  // last piece
+  bool has_previous_ = false;           // there is one
   bool end_is_open_ = false;            // the end of previous_ has no node yet
   double origin_ms_ = 0;                // start of the chain
   std::int64_t next_grid_ = 1;          // next node at origin + next_grid * segment time

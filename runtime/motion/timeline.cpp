@@ -28,10 +28,12 @@ void Timeline::set_rest(std::vector<double> position_mu) {
   end_is_noted_ = true;
 }
 
-void Timeline::push(TimedSegment segment) {
+void Timeline::push(TimedSegment&& segment) {
   end_ms_ = end_of(segment);
   const double programmed_ms = segment.segment.duration_ms;
-  known_.push_back({std::move(segment), programmed_end_ms_});
+  Known& known = known_.extend();
+  known.timed = std::move(segment);
+  known.programmed_ms = programmed_end_ms_;
   programmed_end_ms_ += programmed_ms;
   end_is_noted_ = false;
 }

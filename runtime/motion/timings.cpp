@@ -36,10 +36,11 @@ void Timings::add(const MoveBegin& begin) {
 }
 
 void Timings::add(const MoveEnd& end) {
-  for (auto record = records_.rbegin(); record != records_.rend(); ++record) {
-    if (record->id != end.id) continue;
-    record->end = {end.end_ms, 0, true};
-    cover_now(record->end);
+  for (std::size_t i = records_.size(); i-- > 0;) {
+    Record& record = records_[i];
+    if (record.id != end.id) continue;
+    record.end = {end.end_ms, 0, true};
+    cover_now(record.end);
     break;
   }
   deliver();
@@ -68,7 +69,8 @@ void Timings::cover_place(Place& place, const TimedSegment& segment, bool round_
 
 void Timings::cover(const TimedSegment& segment) {
   const double end_ms = segment.segment.start_ms + segment.segment.duration_ms;
-  for (Record& record : records_) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    Record& record = records_[i];
     if (record.sync.programmed_ms > end_ms + kSamePlace_ms) break;
     const bool start_was_known = record.start.known;
     if (!record.sync.known) cover_place(record.sync, segment, sync_on_segments_);
@@ -82,7 +84,8 @@ void Timings::cover(const TimedSegment& segment) {
 }
 
 void Timings::end_sequence() {
-  for (Record& record : records_) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    Record& record = records_[i];
     const bool start_was_known = record.start.known;
     for (Place* place : {&record.sync, &record.start, &record.end})
       if (!place->known) *place = {place->programmed_ms, covered_ms_, true, true};
@@ -92,8 +95,8 @@ void Timings::end_sequence() {
 }
 
 int Timings::ahead(double time_ms) const {
-  const auto first = std::upper_bound(starts_ms_.begin(), starts_ms_.end(), time_ms);
-  return unknown_starts_ + static_cast<int>(starts_ms_.end() - first);
+  const std::size_t first = starts_ms_.first_not([&](double start_ms) { return start_ms <= time_ms; });
+  return unknown_starts_ + static_cast<int>(starts_ms_.size() - first);
 }
 
 double Timings::ahead_until_ms(int moves) const {
