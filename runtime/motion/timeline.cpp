@@ -28,10 +28,12 @@ void Timeline::set_rest(std::vector<double> position_mu) {
   end_is_noted_ = true;
 }
 
-void Timeline::push(TimedSegment segment) {
+void Timeline::push(TimedSegment&& segment) {
   end_ms_ = end_of(segment);
   const double programmed_ms = segment.segment.duration_ms;
-  known_.push_back({std::move(segment), programmed_end_ms_});
+  Known& known = known_.extend();
+  known.timed = std::move(segment);
+  known.programmed_ms = programmed_end_ms_;
   programmed_end_ms_ += programmed_ms;
   end_is_noted_ = false;
 }
@@ -65,9 +67,12 @@ void Timeline::prune() {
 
 double Timeline::history_start_ms(double time_ms, double amount_ms) const {
   const std::size_t at = first_ending_after(time_ms);
-  const double reached_ms = at == known_.size() ? programmed_end_ms_ : known_[at].programmed_ms;
-  const std::size_t first = known_.first_not([&](const Known& k) { return k.programmed_ms < reached_ms - amount_ms; });
-  return first == known_.size() ? oldest_ms() : known_[first].timed.start_ms;
+  double wanted_ms = programmed_end_ms_ - amount_ms;
+  if (at < known_.size()) wanted_ms = known_[at].programmed_ms + known_[at].timed.programmed_ms(std::max(0.0, time_ms - known_[at].timed.start_ms)) - amount_ms;
+  const std::size_t beyond = known_.first_not([&](const Known& k) { return k.programmed_ms <= wanted_ms; });
+  if (beyond == 0) return oldest_ms();
+  const Known& first = known_[beyond - 1];
+  return first.timed.start_ms + time_at(first.timed, std::min(wanted_ms - first.programmed_ms, first.timed.segment.duration_ms));
 }
 
 double Timeline::programmed_after(double time_ms) const {

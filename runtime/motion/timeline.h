@@ -17,7 +17,7 @@ class Timeline {
   void set_rest(std::vector<double> position_mu);
 
   /// Starts at or after the end of the one before.
-  void push(TimedSegment segment);
+  void push(TimedSegment&& segment);
   /// So much programmed time stays known behind the last sample, for retracing.
   void keep_history(double programmed_ms) { history_ms_ = programmed_ms; }
   /// Forgets segments that sample() has passed and that are no history either.
