@@ -1,10 +1,13 @@
 // However a run or a file is cut into pieces, the same bytes come out.
+#include <array>
+#include <cstdlib>
 #include <random>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include "runtime/gather/table_writer.h"
+#include "tests/reference/random_motion_spec.h"
 #include "tests/unit/gather/scratch_folder.h"
 #include "tests/unit/programs/bench.h"
 
@@ -28,6 +31,33 @@ Samples run_whole(const std::string& name, const std::string& text, const std::s
   return samples_of(bench, end_ms);
 }
 
+/// The run ends and goes on at random times, from a fraction of a servo cycle to a few hundred of them apart.
+Samples run_in_pieces(const std::string& name, const std::string& text, const std::string& commands, double whole_ms, unsigned seed) {
+  std::mt19937 random(seed);
+  ProgramBench bench(name, text);
+  bench.machine->command(commands, "-e");
+  const auto step_ms = [&random] { return 1e-3 * static_cast<double>(random() % std::array{2'000u, 20'000u, 300'000u}[random() % 3]); };
+  for (double until_ms = step_ms(); until_ms < 0.9 * whole_ms; until_ms += step_ms()) {
+    runtime::RunLimits limits;
+    limits.until_ms = until_ms;
+    limits.more_follows = true;
+    bench.machine->run(limits);
+  }
+  const double end_ms = bench.machine->run({}).time_ms;
+  return samples_of(bench, end_ms);
+}
+
+void check_pieces(const std::string& name, const std::string& text, const std::string& commands) {
+  INFO(name << "\n" << text);
+  const Samples whole = run_whole(name, text, commands);
+  REQUIRE(whole.motor_mu.size() > 10);
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const Samples pieces = run_in_pieces(name, text, commands, whole.end_ms, seed);
+    CHECK(pieces.motor_mu.size() == whole.motor_mu.size());
+    CHECK((pieces == whole));
+  }
+}
+
 /// The file that a table becomes when its rows come in pieces; next() says how many rows a piece has.
 template <class Next>
 std::string table(runtime::TableFormat format, const std::vector<double>& values, std::size_t columns, Next next) {
@@ -45,6 +75,20 @@ std::string table(runtime::TableFormat format, const std::vector<double>& values
 }
 
 }  // namespace
+
+TEST_CASE("chunks: a run in pieces of any length has the samples of the run in one", "[determinism]") {
+  check_pieces("05_blended_contour.pmc", "", "&1 b4r");
+  check_pieces("07_oval_lookahead.pmc", "", "&1 b5r");
+  check_pieces("10_scara.pmc", "", "&1 b10r");
+  check_pieces("motion/1_pvt.pmc", "", "&1 b1r");
+  check_pieces("motion/2_spline.pmc", "", "&1 b1r");
+}
+
+TEST_CASE("chunks: random motion programs in pieces", "[determinism]") {
+  const int count = std::getenv("PMAC_RANDOM_PROGRAMS") ? std::atoi(std::getenv("PMAC_RANDOM_PROGRAMS")) : 25;
+  for (int seed = 1; seed <= count; ++seed)
+    check_pieces(fmt::format("random_{}.pmc", seed), reference::random_motion(reference::random_motion_spec(static_cast<std::uint32_t>(seed))).text, "&1 b1r");
+}
 
 TEST_CASE("chunks: tables do not depend on how many rows come at once", "[determinism]") {
   std::mt19937 random(5);
