@@ -25,6 +25,12 @@ function(pmac_tool name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endfunction()
 
+# Seconds that a test may take at the most: sanitizers are slow.
+set(PMAC_TEST_TIMEOUT 120)
+if(PMAC_SANITIZE)
+  set(PMAC_TEST_TIMEOUT 1200)
+endif()
+
 # pmac_test(name SOURCES a_test.cpp ... USES library ...): one executable, one CTest case for each TEST_CASE
 function(pmac_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
@@ -33,5 +39,5 @@ function(pmac_test name)
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE pmac_test_main ${ARG_USES})
   target_compile_definitions(${name} PRIVATE PMAC_SOURCE_DIR="${CMAKE_SOURCE_DIR}" PMAC_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 120)
+  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT ${PMAC_TEST_TIMEOUT})
 endfunction()
