@@ -41,6 +41,8 @@ const Row* find_row(const Row (&rows)[N], std::string_view word) {
   return row == std::end(rows) ? nullptr : row;
 }
 
+constexpr double kMostVariables = 65536;  // of one letter
+
 constexpr std::string_view kMemories[] = {"x", "y", "l", "d", "f", "dp", "tws", "twb", "twd", "twr"};
 
 class TurboPass {
@@ -154,7 +156,7 @@ class TurboPass {
     const std::string power = fmt::format("{}{},{}", tokens_.exact_text(i - 2), first, last - first + 1);
     const source::Span span = source::join(tokens_.span(i - 2), tokens_.span(i + 1));
     auto* error = tokens_.error("PM2024", span, fmt::format("a range of variables is Turbo PMAC; write the first one and how many: {}", power));
-    if (error && last >= first) error->fix = source::FixIt{span, power};
+    if (error && last >= first && last < kMostVariables) error->fix = source::FixIt{span, power};
     tokens_.drop(i, i + 1);
   }
 
