@@ -228,6 +228,13 @@ std::optional<Fault> Pipeline::add(const MotionCommand& command) {
   return s.run_stages(false);
 }
 
+std::optional<double> Pipeline::stop_by_rule_ms(const MotionCommand& next) const {
+  State& s = *state_;
+  if (s.fault) return std::nullopt;
+  auto move = make_move(next, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics});
+  return std::holds_alternative<Move>(move) ? s.planner.stop_by_rule_ms(std::get<Move>(move), s.config) : std::nullopt;
+}
+
 std::optional<Fault> Pipeline::end_sequence() {
   State& s = *state_;
   if (s.fault) return s.fault;
