@@ -65,6 +65,14 @@ Bend bend_of(const PathPlace& from, const PathPlace& to) {
   return {std::sqrt(turn2), greatest2 > 0 ? std::sqrt(change2 / greatest2) : 0};
 }
 
+/// Cubics of time from or to rest have a curvature without bound there. The tangent turns as far in the cell, with a curvature that changes evenly.
+void even_out_at_rest(PathPlace& at_rest, const PathPlace& other, double turn_sign, double length_mu) {
+  for (std::size_t m = 0; m < at_rest.tangent.size(); ++m) {
+    const double mean = turn_sign * (other.tangent[m] - at_rest.tangent[m]) / length_mu;
+    at_rest.curvature_mu[m] = other.rests ? mean : 2 * mean - other.curvature_mu[m];
+  }
+}
+
 }  // namespace
 
 JerkPath::JerkPath(std::vector<MotorLimits> limits, double servo_period_ms) : limits_(std::move(limits)), servo_period_ms_(servo_period_ms) {
@@ -91,6 +99,7 @@ PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms
   const bool rests = speed2_at(segment, at_ms) < kInside * kInside * speed2_at(segment, (at_ms + toward_ms) / 2);
   const double seen_ms = rests ? at_ms + kInside * (toward_ms - at_ms) : at_ms, speed = std::sqrt(speed2_at(segment, seen_ms));
   PathPlace result;
+  result.rests = rests;
   result.max_speed2 = speed2_at(segment, at_ms);
   double along = 0, steady2 = 1e300;
   for (const MotorCubic& q : segment.motor) along += q.velocity(seen_ms) / speed * q.acceleration(seen_ms);
@@ -117,6 +126,8 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   cell.segment = first_segment_ + segments_.size() - 1;
   cell.start = place(segment, from_ms, to_ms, share);
   cell.end = place(segment, to_ms, from_ms, share);
+  if (cell.start.rests) even_out_at_rest(cell.start, cell.end, 1, cell.length_mu);
+  if (cell.end.rests) even_out_at_rest(cell.end, cell.start, -1, cell.length_mu);
   cell.start.max_speed2 = std::min(cell.start.max_speed2, start_speed2);
   judge(cell);
   const bool follows = !cells_.empty() && !cells_.back().stops;

@@ -20,6 +20,7 @@ struct PathPlace {
   std::vector<double> curvature_mu;   // [motor] 1/mu
   double max_speed2 = 0;              // mu^2/ms^2: the program's and the motors' limits of speed
   double steady_speed2 = 0;           // about the highest that the other limits leave as well
+  bool rests = false;                 // of the program: the derivatives are those a little away
 };
 
 struct PathCell {
