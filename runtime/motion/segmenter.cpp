@@ -110,12 +110,14 @@ void Segmenter::enter_piece(const PathPiece& piece) {
   open_->step = open_->step || piece.step_at_start;
 }
 
-/// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and in
-/// pieces with too few nodes.
+/// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and on
+/// curves with too few nodes.
 void Segmenter::take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const {
-  const bool has_few_nodes = piece.duration_ms < kNodesThatTell * config_.segment_time_ms;
+  const double part_of_curve = parameter(piece.part[0], piece.duration_ms) - parameter(piece.part[0], 0);
+  const bool has_few_nodes = piece.duration_ms < kNodesThatTell * config_.segment_time_ms * part_of_curve;
   if (uniform_ || (piece.part_count == 1 && !has_few_nodes)) return;
-  side.velocity_mu_ms.resize(kinematics_.count());
+  side.velocity_mu_ms.assign(kinematics_.count(), 0);
+  if (point.velocity == AxisVector{}) return;   // at rest
   const double step_ms = std::min(kLongestDifference_ms, config_.segment_time_ms / kDifferencesPerSegment);
   if (!kinematics_.rate_by_differences(point.position, point.velocity, step_ms, side.velocity_mu_ms.data(), piece.source)) side.velocity_mu_ms.clear();
 }
