@@ -18,6 +18,9 @@ constexpr int kHalvings = 30;         // of a segment into cells
 constexpr double kKink_rad = 0.1, kStraight_rad = 1e-9;
 constexpr double kUneven = 0.02;      // of the square of the program's speed in the middle, against its ends; halved so many times at most
 constexpr int kHalvingsForSpeed = 3;
+constexpr double kSmallStep = 0.15;   // of acceleration, over the jerk limit times a servo period: jerk is reserved for smaller ones, others are joins
+constexpr double kSlightStep = 0.02;  // of the curvature: no join, however much acceleration it means
+constexpr double kMostReserved = 0.5, kFelt = 0.75;   // of the jerk limit; part of a step in one third difference of samples
 constexpr double kRest = 1e-4;        // and rests below this
 constexpr double kShortest_mu = 1e-9; // segments that move less do not move
 
@@ -135,7 +138,26 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   const double slow2 = std::max(unfelt_mu_ms_ * unfelt_mu_ms_, 1e-30);
   if (kinks || cell.start.max_speed2 <= slow2) stop_here();   // a bend too small for a cell
   cell.stops = cell.end.max_speed2 <= slow2 || bend_of(cell.start, cell.end).turn_rad > kKink_rad;
+  if (follows && !cells_.back().stops) reserve_for_step(cells_.back(), cell);
   cells_.push_back(std::move(cell));
+}
+
+/// The cubics of neighbouring segments of one arc have slightly different curvatures where they meet. What that takes of the jerk at servo rate
+/// is left free there.
+void JerkPath::reserve_for_step(PathCell& before, PathCell& cell) const {
+  const double speed2 = std::min(before.end.steady_speed2, cell.start.steady_speed2);
+  double step = 0, change = 0, greatest = 0;
+  for (std::size_t m = 0; m < std::min(limits_.size(), cell.start.curvature_mu.size()); ++m) {
+    const double from = before.end.curvature_mu[m], to = cell.start.curvature_mu[m];
+    step = std::max(step, std::abs(to - from) * speed2 * limits_[m].inv_jmax_ms3_mu / servo_period_ms_);
+    change = std::max(change, std::abs(to - from));
+    greatest = std::max({greatest, std::abs(from), std::abs(to)});
+  }
+  if (step > kSmallStep && change > kSlightStep * greatest) return;
+  const double reserved = std::min(kMostReserved, kFelt * step);
+  cell.reserved_step = reserved / kFelt;
+  cell.jerk_share = std::min(cell.jerk_share, 1 - reserved);
+  before.jerk_share = std::min(before.jerk_share, 1 - reserved);
 }
 
 /// What the motors' limits come to along the cell.

@@ -30,6 +30,8 @@ struct PathCell {
   PathPlace start, end;
   bool is_straight = false;
   double inv_accel_ms2_mu = 0, inv_jerk_ms3_mu = 0;   // of the tightest motor along the tangents; 0: off
+  double jerk_share = 1;              // part of the jerk limits that may be used: small steps of curvature at its ends take the rest,
+  double reserved_step = 0;           // of acceleration at its start, over the jerk limit times a servo period
   double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
 };
@@ -59,6 +61,7 @@ class JerkPath {
  private:
   PathPlace place(const Segment& segment, double at_ms, double toward_ms, double share) const;
   void judge(PathCell& cell) const;
+  void reserve_for_step(PathCell& before, PathCell& cell) const;
   bool bends_unevenly(const PathPlace& from, const PathPlace& middle, const PathPlace& to, double length_mu) const;
   void add_cells(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2, int halvings);
   void add_cell(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2);

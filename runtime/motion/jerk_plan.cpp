@@ -281,11 +281,11 @@ void JerkPlan::add_rows(const PlannedCell& planned) {
   const ProfileRow* last = problem_.rows.empty() ? nullptr : problem_.rows.data() + problem_.first_row[problem_.first_row.size() - 2];
   const double from = planned.from_mu / cell.length_mu, to = planned.to_mu / cell.length_mu;
   std::vector<ProfileRow> rows;
-  if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / kJerk, 1, 0, 1, 1, 0, 0, true});
+  if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / (kJerk * cell.jerk_share), 1, 0, 1, 1, 0, 0, true});
   for (std::size_t m = 0; !cell.is_straight && m < std::min(path_.limits().size(), cell.start.tangent.size()); ++m) {
     const MotorLimits& limit = path_.limits()[m];
     if (limit.inv_amax_ms2_mu <= 0 && limit.inv_jmax_ms3_mu <= 0) continue;
-    rows.push_back({limit.inv_amax_ms2_mu / (kAccel * cell.accel_share), limit.inv_jmax_ms3_mu / kJerk, tangent_at(cell, m, from), curvature_at(cell, m, from),
+    rows.push_back({limit.inv_amax_ms2_mu / (kAccel * cell.accel_share), limit.inv_jmax_ms3_mu / (kJerk * cell.jerk_share), tangent_at(cell, m, from), curvature_at(cell, m, from),
                     tangent_at(cell, m, (from + to) / 2), tangent_at(cell, m, to), curvature_at(cell, m, to),
                     (cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu, false});
   }
