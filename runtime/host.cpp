@@ -75,6 +75,7 @@ class MachineHost : public Host {
   }
 
   double read_element(Thread& thread, const ElementAddress& address) override {
+    s_.catch_up();
     return read_element_value(s_, Runner::of(thread), address);
   }
 
@@ -91,6 +92,7 @@ class MachineHost : public Host {
   }
 
   Flow control(Thread& thread, bytecode::ControlVerb verb, std::span<const double> arguments) override {
+    s_.catch_up();
     Runner& runner = Runner::of(thread);
     std::string refusal;
     const Flow flow = execute_control(s_, runner, verb, arguments, refusal);
@@ -115,6 +117,7 @@ class MachineHost : public Host {
   }
 
   Flow command(Thread& thread, std::string_view text) override {
+    s_.catch_up();
     if (s_.queued.size() >= kMaxQueuedCommands) return fault(thread, FaultKind::kRunTime, "too many cmd texts wait");
     s_.queued.push_back({Machine::State::sender_key(Runner::of(thread)), std::string(text), thread.source()});
     return Flow::kContinue;
@@ -168,6 +171,7 @@ class MachineHost : public Host {
   }
 
   double read_field(Thread& thread, const PointerEntry& pointer) {
+    s_.catch_up();
     const double word = read_element_value(s_, Runner::of(thread), pointer.element);
     return pointer.definition.has_field ? read_bit_field(word, pointer.definition) : word;
   }
@@ -202,6 +206,7 @@ bool needs_finite_value(ElementId id) {
 }
 
 Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double value) {
+  s_.catch_up();
   Runner& runner = Runner::of(thread);
   const bytecode::ElementInfo& info = element_info(a.id);
   if (info.access == ElementAccess::kStatus) {

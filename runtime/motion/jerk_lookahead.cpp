@@ -135,7 +135,7 @@ void JerkLookahead::note_step(std::size_t before, std::size_t after, double spee
     worst = std::max(worst, change * path_.limits()[m].inv_jmax_ms3_mu / servo_period_ms_);
     worst = std::max(worst, std::abs(b.start.tangent[m] - a.end.tangent[m]) * speed * path_.limits()[m].inv_jmax_ms3_mu / (servo_period_ms_ * servo_period_ms_));
   }
-  if (worst > std::max(kJump, b.reserved_step)) timed.jerk_step = worst;
+  if (worst > std::max(kJump, b.start_step)) timed.jerk_step = worst;
 }
 
 }  // namespace pmac::motion

@@ -20,7 +20,7 @@ constexpr double kUneven = 0.02;      // of the square of the program's speed in
 constexpr int kHalvingsForSpeed = 3;
 constexpr double kSmallStep = 0.15;   // of acceleration, over the jerk limit times a servo period: jerk is reserved for smaller ones, others are joins
 constexpr double kSlightStep = 0.02;  // of the curvature: no join, however much acceleration it means
-constexpr double kMostReserved = 0.5, kFelt = 0.75;   // of the jerk limit; part of a step in one third difference of samples
+constexpr double kMostReserved = 0.6;
 constexpr double kRest = 1e-4;        // and rests below this
 constexpr double kShortest_mu = 1e-9; // segments that move less do not move
 
@@ -154,10 +154,7 @@ void JerkPath::reserve_for_step(PathCell& before, PathCell& cell) const {
     greatest = std::max({greatest, std::abs(from), std::abs(to)});
   }
   if (step > kSmallStep && change > kSlightStep * greatest) return;
-  const double reserved = std::min(kMostReserved, kFelt * step);
-  cell.reserved_step = reserved / kFelt;
-  cell.jerk_share = std::min(cell.jerk_share, 1 - reserved);
-  before.jerk_share = std::min(before.jerk_share, 1 - reserved);
+  cell.start_step = before.end_step = std::min(step, kMostReserved);
 }
 
 /// What the motors' limits come to along the cell.

@@ -30,11 +30,13 @@ struct PathCell {
   PathPlace start, end;
   bool is_straight = false;
   double inv_accel_ms2_mu = 0, inv_jerk_ms3_mu = 0;   // of the tightest motor along the tangents; 0: off
-  double jerk_share = 1;              // part of the jerk limits that may be used: small steps of curvature at its ends take the rest,
-  double reserved_step = 0;           // of acceleration at its start, over the jerk limit times a servo period
+  double start_step = 0, end_step = 0;   // small steps of acceleration there that jerk is reserved for, over the jerk limit times a servo period
   double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
 };
+
+/// Part of the jerk limit that a small step of acceleration leaves: in one third difference of samples much of it is felt.
+inline double jerk_share_beside(double step) { return 1 - 0.75 * step; }
 
 class JerkPath {
  public:
