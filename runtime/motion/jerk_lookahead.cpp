@@ -110,7 +110,7 @@ void JerkLookahead::emit_part(const PlannedCell& part, double speed_from, double
   TimedSegment timed;
   timed.duration_ms = time_ms;
   timed.rate = rate;
-  timed.segment = {owner.command, owner.source, owner.start_ms + d0, d1 - d0, {}};
+  timed.segment = {owner.command, owner.source, owner.start_ms + d0, d1 - d0, 0, {}};
   const auto velocity = [&](const MotorCubic& q, double at_ms, double path_speed) {
     double norm2 = 0;
     for (const MotorCubic& each : owner.motor) norm2 += each.velocity(at_ms) * each.velocity(at_ms);
