@@ -92,10 +92,11 @@ std::uint64_t run_free(Machine::State& s, double limit_ms, std::uint64_t event) 
   s.runs_free = s.programs_execute = true;
   s.update_idle(s.now_ms);
   for (bool goes_on = true; goes_on && s.instructions <= s.options.max_instructions && !interruption_wanted();) {
-    const double next_ms = next_event_ms(running);
+    const double next_ms = std::max(s.now_ms, next_event_ms(running));
     if (!(next_ms < limit_ms)) break;
-    s.now_ms = std::max(s.now_ms, next_ms);
-    if (s.tick_ms(s.tick + kLeftOutTicks) <= s.now_ms) s.sample_to(s.now_ms);
+    const bool block_is_full = s.tick_ms(s.tick + kLeftOutTicks) <= next_ms;
+    s.now_ms = block_is_full ? s.sample_to(next_ms) : next_ms;
+    if (s.now_ms < next_ms) break;   // interrupted
     goes_on = service_event(s, running);
     goes_on = ++event % kEventsPerLook != 0 && goes_on;
   }

@@ -230,6 +230,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
         return fault(thread, FaultKind::kRunTime, fmt::format("{} cannot be set to {} now", info.name, number_text(value)));
       (a.id == ElementId::kSysServoPeriod ? s_.servo_period_ms : rti) = value;
       s_.rti_cycles = static_cast<std::int64_t>(rti) + 1;
+      s_.rti_asked_cycles = 0;
       break;
     case ElementId::kSysCdTimer: s_.elements.assign(a, s_.now_ms + value); return Flow::kContinue;
     case ElementId::kSysP: s_.p[a.index[0]] = value; return Flow::kContinue;

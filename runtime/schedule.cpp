@@ -35,6 +35,14 @@ void shorten_rows(std::vector<double>& rows, std::size_t count, std::size_t wide
     std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(u * wide), narrow, rows.begin() + static_cast<std::ptrdiff_t>(u * narrow));
 }
 
+/// Servo ticks after the last sampled one up to time_ms, where there is one; at most `most` of them.
+int ticks_up_to(const Machine::State& s, double time_ms, int most) {
+  auto count = static_cast<int>(std::clamp((time_ms - s.tick_ms(s.tick)) / s.period_ms(), 1.0, static_cast<double>(most)));
+  while (count > 1 && s.tick_ms(s.tick + count) > time_ms) --count;
+  while (count < most && s.tick_ms(s.tick + count + 1) <= time_ms) ++count;
+  return count;
+}
+
 /// Nobody looks at the samples up to the last two before time_ms: only where the motors are then, and how fast, counts.
 std::int64_t tick_before_seen(const Machine::State& s, double time_ms) {
   const bool seen = !s.sinks.empty() || s.gather.enabled() || any_watched(s, s.block_motors);
@@ -71,10 +79,13 @@ RunEnd run_events(Machine::State& s, const RunLimits& limits) {
 }  // namespace
 
 double Machine::State::next_rti_ms(double time_ms) const {
+  if (time_ms == rti_asked_ms && rti_cycles == rti_asked_cycles) return rti_answer_ms;
   const std::int64_t every = rti_cycles;
   auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
   while (tick_ms(n * every) <= time_ms) ++n;
-  return tick_ms(n * every);
+  rti_asked_ms = time_ms;
+  rti_asked_cycles = rti_cycles;
+  return rti_answer_ms = tick_ms(n * every);
 }
 
 double Machine::State::rti_at_or_after_ms(double time_ms) const {
@@ -174,8 +185,8 @@ double Machine::State::sample_to(double time_ms) {
   std::vector<double>& actual = plants ? block_actual : block_rows;
   tick = tick_before_seen(*this, time_ms);
   while (tick_ms(tick + 1) <= time_ms) {
-    block_times.clear();
-    for (int k = 0; k < (single ? 1 : kBlockTicks) && tick_ms(tick + 1 + k) <= time_ms; ++k) block_times.push_back(tick_ms(tick + 1 + k));
+    block_times.resize(static_cast<std::size_t>(ticks_up_to(*this, time_ms, single ? 1 : kBlockTicks)));
+    for (std::size_t k = 0; k < block_times.size(); ++k) block_times[k] = tick_ms(tick + 1 + static_cast<std::int64_t>(k));
     command_rows();
     const int kept = follow_rows(actual);
     const std::size_t values = block_motors.size() * static_cast<std::size_t>(kept);

@@ -118,6 +118,8 @@ struct Machine::State {
   /// Sys.ServoPeriod and Sys.RtIntPeriod, fixed from the first servo interrupt on.
   double servo_period_ms = elements.get(bytecode::ElementId::kSysServoPeriod);
   std::int64_t rti_cycles = 1;
+  mutable double rti_asked_ms = -1, rti_answer_ms = 0;   // the last question of next_rti_ms(), asked several times an event
+  mutable std::int64_t rti_asked_cycles = 0;             // 0: forgotten
   double period_ms() const { return servo_period_ms; }
   double rti_period_ms() const { return servo_period_ms * static_cast<double>(rti_cycles); }
   double tick_ms(std::int64_t k) const { return static_cast<double>(k) * period_ms(); }

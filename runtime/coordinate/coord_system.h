@@ -27,6 +27,7 @@
 #include "runtime/motion/cutter_compensation.h"
 #include "runtime/motion/pipeline.h"
 #include "runtime/motion/profile.h"
+#include "runtime/motion/ring.h"
 #include "runtime/motion/spline.h"
 #include "runtime/runner.h"
 
@@ -390,10 +391,10 @@ class CoordSystem {
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };
-  std::deque<PendingMove> pending_moves_;
+  motion::Ring<PendingMove> pending_moves_;
   std::vector<motion::MoveTiming> timings_;
   struct ExecutedMove { motion::MoveTiming timing; std::string_view mode; bytecode::SourceLine source; };
-  std::deque<ExecutedMove> executed_;  // planned in full; reported when they end
+  motion::Ring<ExecutedMove> executed_;  // planned in full; reported when they end
   std::vector<double> sample_run_, path_times_ms_;   // of samples, kept so that a block costs no allocation
   std::deque<SyncEntry> sync_;
   std::vector<motion::SyncTime> sync_times_;

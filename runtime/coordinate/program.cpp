@@ -82,7 +82,7 @@ int CoordSystem::commands_wanted() const {
 bool CoordSystem::enough_ahead(double time_ms) const {
   if (pipeline_.horizon_ms() < time_base_.path_at(machine_.next_rti_ms(time_ms))) return false;
   const double path_ms = time_base_.path_at(time_ms);
-  return lookahead_ ? !pipeline_.wants_more_segments(path_ms) : pipeline_.commands_ahead(path_ms) >= commands_wanted();
+  return lookahead_ ? !pipeline_.wants_more_segments(path_ms) : pipeline_.enough_until_ms(commands_wanted()) > path_ms;
 }
 
 /// The first real-time interrupt at which enough_ahead() may have become false, and before the horizon.

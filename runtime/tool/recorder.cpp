@@ -19,7 +19,9 @@ void Recorder::take(const runtime::SampleBlock& block) {
   if (sinks_.empty()) return;
   take_new_motors(block.motors);
   held_.resize(motor_width());
-  for (int k = 0; k < block.count; ++k) held_[0].push_back(block.time_ms(k) / 1000.0);
+  const std::size_t before = held_rows();
+  held_[0].resize(before + static_cast<std::size_t>(block.count));
+  for (int k = 0; k < block.count; ++k) held_[0][before + static_cast<std::size_t>(k)] = block.time_ms(k) / 1000.0;
   const auto count = static_cast<std::ptrdiff_t>(block.count);
   for (std::size_t m = 0; m < motors_.size(); ++m) {
     const auto first = (std::find(block.motors.begin(), block.motors.end(), motors_[m]) - block.motors.begin()) * count;
