@@ -119,7 +119,7 @@ std::vector<std::array<double, 3>> whole_path(const std::vector<pmac::motion::Mo
   std::vector<std::array<double, 3>> rows;
   for (double tick = std::ceil(start_ms / config.servo_period_ms); tick * config.servo_period_ms <= pipeline.end_ms(); ++tick) {
     std::array<double, 3> row{};
-    pipeline.sample(tick * config.servo_period_ms, config.servo_period_ms, 1, row, {});
+    pipeline.sample(tick * config.servo_period_ms, row, {});
     rows.push_back(row);
   }
   return rows;
