@@ -122,7 +122,8 @@ void CoordSystem::motors_arrived(double time_ms) {
   phase_ = Phase::kCalculating;
   if (const std::string refusal = axes_elsewhere ? match_positions(time_ms) : std::string(); !refusal.empty())
     return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
-  go_on(time_ms);
+  if (waits_in_position()) settle(time_ms, 0);
+  else go_on(time_ms);
 }
 
 void CoordSystem::service(double time_ms) {
@@ -144,6 +145,7 @@ void CoordSystem::service(double time_ms) {
         record({"dwell", item_source_, number_, -1, item_start_ms_, time_ms, 0});
         go_on(time_ms);
         break;
+      case Phase::kSettling: go_on_settled(time_ms); break;
       case Phase::kRapid:
       case Phase::kHoming:
         if (motors_end_ms() > time_ms) return;
@@ -165,6 +167,11 @@ void CoordSystem::calculate(double time_ms) {
       resume_ms_ = next_calculation_ms(time_ms);
       return;
     }
+  }
+  if (held_back_) {
+    motion::MotionCommand command = *std::exchange(held_back_, std::nullopt);
+    if (auto fault = add_blendable(command)) return fail(time_ms, std::move(*fault));
+    return calculate(time_ms);
   }
   calculated_at_ms_ = time_ms;
   const auto go_back = static_cast<std::int64_t>(machine_.elements.get(ElementId::kCoordGoBack, static_cast<unsigned>(number_)));
@@ -230,6 +237,7 @@ void CoordSystem::at_rest(double time_ms) {
         return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
       go_on(time_ms);
       break;
+    case AfterRest::kSettle: settle(time_ms, settled_dwell_ms_); break;
     case AfterRest::kPause: pause_here(time_ms); break;
     case AfterRest::kLimit: break;
     case AfterRest::kDwell: start_dwell(time_ms); break;

@@ -61,6 +61,7 @@ class JerkPlan {
   bool refine();
   bool is_coarse(std::size_t i, double finest_ms) const;
   void make_problem();
+  double jerk_share(const PlannedCell& planned) const;
   void add_rows(const PlannedCell& planned);
   bool accept(bool solved);
   void slow_down();

@@ -15,6 +15,9 @@ using runtime::Fault;
 constexpr double kMaxTurn_rad = 0.1;
 /// Nodes are not placed nearer to one another: second differences of positions would be all rounding.
 constexpr double kMinGap_ms = 1e-3;
+/// Differences of a kinematic routine: short beside a segment, and long beside what an iterating routine leaves undecided.
+constexpr double kLongestDifference_ms = 1, kDifferencesPerSegment = 8;
+constexpr double kNodesThatTell = 4;
 
 double turn_rad(const PathPiece& piece, double from_ms, double to_ms) {
   double turn = 0;
@@ -111,19 +114,37 @@ void Segmenter::enter_piece(const PathPiece& piece) {
   if (is_new_side) {
     PathMotion point;
     evaluate(piece, local_ms, kinematics_.axes(), point);
-    fill_side(open_.after, piece, local_ms, point);
+    const bool known = !kinematics_.is_linear() && !piece.step_at_start && !open_.before.velocity_mu_ms.empty();
+    fill_side(open_.after, piece, local_ms, point, known ? &open_.before.velocity_mu_ms : nullptr);
   }
   if (!is_new_side) open_.after = open_.before;
   open_.step = open_.step || piece.step_at_start;
 }
 
-/// point: the path at local_ms.
-void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point) const {
+/// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and on
+/// curves with too few nodes.
+void Segmenter::take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const {
+  const double part_of_curve = parameter(piece.part[0], piece.duration_ms) - parameter(piece.part[0], 0);
+  const bool has_few_nodes = piece.duration_ms < kNodesThatTell * config_.segment_time_ms * part_of_curve;
+  if (uniform_ || (piece.part_count == 1 && !has_few_nodes)) return;
+  side.velocity_mu_ms.assign(kinematics_.count(), 0);
+  if (point.velocity == AxisVector{}) return;   // at rest
+  const double step_ms = std::min(kLongestDifference_ms, config_.segment_time_ms / kDifferencesPerSegment);
+  if (!kinematics_.rate_by_differences(point.position, point.velocity, step_ms, side.velocity_mu_ms.data(), piece.source)) side.velocity_mu_ms.clear();
+}
+
+/// point: the path at local_ms. velocity_mu_ms: if it is known.
+void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point, const Row<double>* velocity_mu_ms) const {
   side.stretch = stretch_;
   const bool corner = piece.part_count > 1;
   side.z = corner ? piece.start_ms + local_ms - stretch_start_ms_ : parameter(piece.part[0], local_ms);
   side.z_rate = corner ? 1 : parameter_rate(piece.part[0], local_ms);
-  if (!kinematics_.is_linear()) return;
+  if (!kinematics_.is_linear()) {
+    side.velocity_mu_ms.clear();
+    if (velocity_mu_ms) side.velocity_mu_ms = *velocity_mu_ms;
+    else take_differences(side, piece, point);
+    return;
+  }
   side.velocity_mu_ms.resize(kinematics_.count());
   kinematics_.rate(point.velocity, side.velocity_mu_ms.data());
 }

@@ -34,7 +34,8 @@ class Segmenter {
   std::optional<runtime::Fault> add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out);
   std::optional<runtime::Fault> close_gap(std::vector<Segment>& out);
   void enter_piece(const PathPiece& piece);
-  void fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point) const;
+  void fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point, const Row<double>* velocity_mu_ms = nullptr) const;
+  void take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const;
   void place_nodes(const PathPiece& piece);
   void add_turn_nodes(const PathPiece& piece, double end_ms);
   bool passes_nodes(const PathPiece& piece) const;
