@@ -91,6 +91,13 @@ class MachineHost : public Host {
     return s_.coord(thread.coord).motion(thread, instruction, registers);
   }
 
+  Flow move_words(Thread& thread, std::span<const std::uint8_t> words, std::span<const double> values) override {
+    Runner& runner = Runner::of(thread);
+    if (runner.kind != RunnerKind::kMotionProgram) return Host::move_words(thread, words, values);
+    s_.coord(runner.number).add_words(words, values);
+    return Flow::kContinue;
+  }
+
   Flow control(Thread& thread, bytecode::ControlVerb verb, std::span<const double> arguments) override {
     s_.catch_up();
     Runner& runner = Runner::of(thread);

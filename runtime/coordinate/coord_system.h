@@ -131,6 +131,8 @@ class CoordSystem {
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
+  /// Words of a move block, as Host::move_words() has them.
+  void add_words(std::span<const std::uint8_t> words, std::span<const double> values);
   /// A move block of a PLC program: rapid whatever the mode, and nobody waits for it.
   Flow plc_move(Thread& thread, const OpenBlock& block);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);

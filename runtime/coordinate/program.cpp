@@ -161,12 +161,9 @@ void CoordSystem::go_on(double time_ms) { pause_requested_ ? pause_here(time_ms)
 
 void CoordSystem::calculate(double time_ms) {
   phase_ = Phase::kCalculating;
-  if (on_path_) {
-    collect_timings();
-    if (enough_ahead(time_ms)) {
-      resume_ms_ = next_calculation_ms(time_ms);
-      return;
-    }
+  if (on_path_ && enough_ahead(time_ms)) {
+    resume_ms_ = next_calculation_ms(time_ms);
+    return;
   }
   if (held_back_) {
     motion::MotionCommand command = *std::exchange(held_back_, std::nullopt);

@@ -96,6 +96,10 @@ Flow CoordSystem::give_up(Thread& thread, Fault fault) {
   return Flow::kFault;
 }
 
+void CoordSystem::add_words(std::span<const std::uint8_t> words, std::span<const double> values) {
+  for (std::size_t i = 0; i < words.size(); ++i) block_.add(bytecode::move_word_kind(words[i]), bytecode::move_word_index(words[i]), values[i]);
+}
+
 Flow CoordSystem::end_block(Thread& thread) {
   const Flow flow = execute_block(thread, block_);
   block_.clear();
