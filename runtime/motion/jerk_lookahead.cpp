@@ -135,7 +135,8 @@ void JerkLookahead::note_step(std::size_t before, std::size_t after, double spee
     worst = std::max(worst, change * path_.limits()[m].inv_jmax_ms3_mu / servo_period_ms_);
     worst = std::max(worst, std::abs(b.start.tangent[m] - a.end.tangent[m]) * speed * path_.limits()[m].inv_jmax_ms3_mu / (servo_period_ms_ * servo_period_ms_));
   }
-  if (worst > std::max(kJump, b.start_step)) timed.jerk_step = worst;
+  const bool is_planned_for = b.start_step_mu2 > 0 && worst <= kMostReservedStep;
+  if (worst > kJump && !is_planned_for) timed.jerk_step = worst;
 }
 
 }  // namespace pmac::motion

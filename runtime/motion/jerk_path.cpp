@@ -20,7 +20,6 @@ constexpr double kUneven = 0.02;      // of the square of the program's speed in
 constexpr int kHalvingsForSpeed = 3;
 constexpr double kSmallStep = 0.15;   // of acceleration, over the jerk limit times a servo period: jerk is reserved for smaller ones, others are joins
 constexpr double kSlightStep = 0.02;  // of the curvature: no join, however much acceleration it means
-constexpr double kMostReserved = 0.6;
 constexpr double kRest = 1e-4;        // and rests below this
 constexpr double kShortest_mu = 1e-9; // segments that move less do not move
 
@@ -146,15 +145,15 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
 /// is left free there.
 void JerkPath::reserve_for_step(PathCell& before, PathCell& cell) const {
   const double speed2 = std::min(before.end.steady_speed2, cell.start.steady_speed2);
-  double step = 0, change = 0, greatest = 0;
+  double step_mu2 = 0, change = 0, greatest = 0;
   for (std::size_t m = 0; m < std::min(limits_.size(), cell.start.curvature_mu.size()); ++m) {
     const double from = before.end.curvature_mu[m], to = cell.start.curvature_mu[m];
-    step = std::max(step, std::abs(to - from) * speed2 * limits_[m].inv_jmax_ms3_mu / servo_period_ms_);
+    step_mu2 = std::max(step_mu2, std::abs(to - from) * limits_[m].inv_jmax_ms3_mu / servo_period_ms_);
     change = std::max(change, std::abs(to - from));
     greatest = std::max({greatest, std::abs(from), std::abs(to)});
   }
-  if (step > kSmallStep && change > kSlightStep * greatest) return;
-  cell.start_step = before.end_step = std::min(step, kMostReserved);
+  if (step_mu2 * speed2 > kSmallStep && change > kSlightStep * greatest) return;
+  cell.start_step_mu2 = before.end_step_mu2 = step_mu2;
 }
 
 /// What the motors' limits come to along the cell.

@@ -30,13 +30,16 @@ struct PathCell {
   PathPlace start, end;
   bool is_straight = false;
   double inv_accel_ms2_mu = 0, inv_jerk_ms3_mu = 0;   // of the tightest motor along the tangents; 0: off
-  double start_step = 0, end_step = 0;   // small steps of acceleration there that jerk is reserved for, over the jerk limit times a servo period
+  /// Small steps of acceleration there that jerk is reserved for: over the jerk limit times a servo period, and over the square of the speed.
+  double start_step_mu2 = 0, end_step_mu2 = 0;   // ms^2/mu^2
   double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
 };
 
+/// The largest small step, over the jerk limit times a servo period.
+inline constexpr double kMostReservedStep = 0.6;
 /// Part of the jerk limit that a small step of acceleration leaves: in one third difference of samples much of it is felt.
-inline double jerk_share_beside(double step) { return 1 - 0.75 * step; }
+inline double jerk_share_beside(double step) { return 1 - 0.75 * (step < kMostReservedStep ? step : kMostReservedStep); }
 
 class JerkPath {
  public:

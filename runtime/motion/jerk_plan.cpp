@@ -265,7 +265,7 @@ void JerkPlan::make_problem() {
     const PlannedCell& planned = new_cells_[i];
     const PathCell& cell = path_.cell(planned.cell);
     const bool whole = planned.to_mu == cell.length_mu;
-    add_rows(planned);
+    add_rows(i);
     double max_speed2 = max_speed2_at(cell, planned.to_mu);
     if (whole && i + 1 < new_cells_.size()) max_speed2 = std::min(max_speed2, path_.cell(planned.cell + 1).start.max_speed2);
     problem_.max_speed2.push_back(max_speed2);
@@ -276,21 +276,24 @@ void JerkPlan::make_problem() {
 }
 
 /// Of the jerk limits, that cells near small steps of acceleration may use.
-double JerkPlan::jerk_share(const PlannedCell& planned) const {
+double JerkPlan::jerk_share(std::size_t i) const {
+  const PlannedCell& planned = new_cells_[i];
   const PathCell& cell = path_.cell(planned.cell);
   const double near_mu = kNear * 2 * shortest_step_ms_ * std::sqrt(std::max(cell.start.steady_speed2, cell.end.steady_speed2));
-  double step = planned.from_mu < near_mu ? cell.start_step : 0;
-  if (planned.to_mu > cell.length_mu - near_mu) step = std::max(step, cell.end_step);
-  return jerk_share_beside(step);
+  double step_mu2 = planned.from_mu < near_mu ? cell.start_step_mu2 : 0;
+  if (planned.to_mu > cell.length_mu - near_mu) step_mu2 = std::max(step_mu2, cell.end_step_mu2);
+  const double steady2 = std::max(cell.start.steady_speed2, cell.end.steady_speed2), guess2 = std::max(i > 0 ? guess_speed2_[i - 1] : state_.speed2, guess_speed2_[i]);
+  return jerk_share_beside(step_mu2 * std::min(steady2, guess2 / kFirstGuess));
 }
 
 /// What the motors make of a cell; along a straight line the tightest counts for all.
-void JerkPlan::add_rows(const PlannedCell& planned) {
+void JerkPlan::add_rows(std::size_t i) {
+  const PlannedCell& planned = new_cells_[i];
   const PathCell& cell = path_.cell(planned.cell);
   const std::size_t before = problem_.rows.size() - (problem_.first_row.size() > 1 ? problem_.first_row[problem_.first_row.size() - 2] : 0);
   const ProfileRow* last = problem_.rows.empty() ? nullptr : problem_.rows.data() + problem_.first_row[problem_.first_row.size() - 2];
   const double from = planned.from_mu / cell.length_mu, to = planned.to_mu / cell.length_mu;
-  const double share = jerk_share(planned);
+  const double share = jerk_share(i);
   std::vector<ProfileRow> rows;
   if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / (kJerk * share), 1, 0, 1, 1, 0, 0, true});
   for (std::size_t m = 0; !cell.is_straight && m < std::min(path_.limits().size(), cell.start.tangent.size()); ++m) {
