@@ -16,11 +16,23 @@ Span join(const Span& first, const Span& last) {
   return joined;
 }
 
+namespace {
+
+/// Calls back with the offset behind every line end.
+template <typename Callback>
+void for_each_line_end(const std::string& text, Callback&& behind) {
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) behind(at + 1);
+}
+
+}  // namespace
+
 std::int32_t SourceManager::add_file(std::string name, std::string text, Span included_from) {
   File file{std::move(name), decode_text(std::move(text)), included_from, {0}, {}};
   if (file.text.starts_with("\xef\xbb\xbf")) file.line_starts[0] = 3;
-  file.line_starts.reserve(static_cast<std::size_t>(std::count(file.text.begin(), file.text.end(), '\n')) + 1);
-  for (std::size_t at = file.text.find('\n'); at != std::string::npos; at = file.text.find('\n', at + 1)) file.line_starts.push_back(static_cast<std::uint32_t>(at + 1));
+  std::size_t lines = 1;
+  for_each_line_end(file.text, [&](std::size_t) { ++lines; });
+  file.line_starts.reserve(lines);
+  for_each_line_end(file.text, [&](std::size_t begin) { file.line_starts.push_back(static_cast<std::uint32_t>(begin)); });
   files_.push_back(std::move(file));
   return static_cast<std::int32_t>(files_.size() - 1);
 }

@@ -285,9 +285,11 @@ double Pipeline::horizon_ms() const {
 
 double Pipeline::end_ms() const { return state_->timeline.end_ms(); }
 
-void Pipeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
-  state_->timeline.sample(start_ms, period_ms, count, position_mu, velocity_mu_ms);
+void Pipeline::sample(std::span<const double> time_ms, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
+  state_->timeline.sample(time_ms, position_mu, velocity_mu_ms);
 }
+
+void Pipeline::pass(double time_ms) { state_->timeline.pass(time_ms); }
 
 void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
 

@@ -46,5 +46,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try_command(*frame, servo);
     try_reply(*frame, commands);
   }
+  for (int cycle = 0; cycle < 500; ++cycle) servo.step(cycle % 50 == 0);
   return 0;
 }

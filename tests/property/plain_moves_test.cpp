@@ -26,6 +26,41 @@ class TextMaker {
     return text + "close\n";
   }
 
+  /// Part programs with modes, feeds, code letters and block numbers.
+  std::string coded_program(int lines, bool right, bool with_moves) {
+    right_ = right;
+    std::string text = "global Speed = 5\nopen prog 7\nlinear abs ta10 ts0 F50\n";
+    for (int i = 0; i < lines; ++i) text += below(120) == 0 && !right ? odd_line() : with_moves && below(60) == 0 ? moves(150) : coded_line();
+    return text + "close\n";
+  }
+
+  std::string coded_line() {
+    static const char* const kModes[] = {"linear", "rapid", "abs", "inc", "Linear", "circle1", "CIRCLE2", "circle 1", "circle5"};
+    std::string text = below(4) == 0 ? fmt::format("N{}{}", below(100000), below(2) ? " " : "") : "";
+    if (below(25) == 0) return text + "\n";
+    if (below(30) == 0) return "  // X5 only a comment\n";
+    if (below(2) == 0) {
+      const std::string codes = "GgMTSHd";
+      text += std::string(1, codes[below(codes.size())]) + fmt::format("{:02}", below(99));
+      for (unsigned i = below(6); i > 0; --i) text += (below(5) ? " " : "") + std::string(1, "XYZABCIJKRFSPQLHDMTGxyfmeN"[below(right_ ? 24 : 26)]) + number();
+    } else {
+      for (unsigned i = below(3); i > 0; --i) {
+        const unsigned kind = below(3);
+        text += kind == 0 ? std::string(kModes[below(right_ ? 5 : std::size(kModes))]) + " " : kind == 1 ? fmt::format("F{} ", below(500)) : fmt::format("t{}{} ", "asdm"[below(4)], below(100));
+      }
+      for (unsigned i = below(5); i > 0; --i) text += std::string(1, "XYZABCUVWxzIJKR"[below(right_ ? 11 : 15)]) + number() + (below(3) ? " " : "");
+      if (below(6) == 0) text += fmt::format("F{}", below(1000));
+    }
+    if (below(12) == 0) text += " // G5";
+    return text + (below(10) == 0 ? "\r\n" : "\n");
+  }
+
+  std::string moves(int lines) {
+    std::string text;
+    for (int i = 0; i < lines; ++i) text += plain_line();
+    return text;
+  }
+
   std::string plain_line() {
     std::string text = below(8) == 0 ? "  " : "";
     std::string axes = "XYZABCUVW";
@@ -68,6 +103,7 @@ class TextMaker {
 
   std::mt19937 random_;
   int labels_ = 0;
+  bool right_ = true;   // without lines that are wrong
 };
 
 struct Compiled {
@@ -172,6 +208,37 @@ TEST_CASE("plain moves: the fast path and the grammar give the same program", "[
     CHECK(fast.listing == slow.listing);
   }
   CHECK(rows > static_cast<std::size_t>(count) * 200);
+}
+
+TEST_CASE("plain lines: the second fast path and the grammar give the same program and the same messages", "[property]") {
+  const int count = std::getenv("PMAC_RANDOM_PROGRAMS") ? std::atoi(std::getenv("PMAC_RANDOM_PROGRAMS")) : 6;
+  int whole = 0;
+  for (int seed = 1; seed <= count; ++seed) {
+    const bool with_moves = seed % 3 == 0;  // of plain moves one message stands for many
+    const std::string text = TextMaker(static_cast<std::uint32_t>(seed)).coded_program(600, seed % 2 == 0, with_moves);
+    const Compiled fast = compile(text, true), slow = compile(text, false);
+    INFO("seed " << seed);
+    if (!with_moves) CHECK(fast.messages == slow.messages);
+    REQUIRE(fast.module.has_value() == slow.module.has_value());
+    CHECK(fast.listing == slow.listing);
+    whole += slow.module.has_value();
+  }
+  CHECK(2 * whole >= count);
+}
+
+TEST_CASE("plain lines: a line that goes on, and names that the lines could use, are left to the grammar", "[property]") {
+  std::string codes;
+  for (int i = 0; i < 100; ++i) codes += fmt::format("N{} G1 X{} F{}\n", i, i % 9, 10 + i);
+  for (const std::string& text : {"open prog 1\n" + codes + "M5\n= 3\nclose\n", "open prog 1\n" + codes + "abs (X)\nclose\n", "#define G1 linear\nopen prog 1\n" + codes + "close\n",
+                                  "#define linear rapid\nopen prog 1\n" + codes + "linear X5\nclose\n", "global N5;\nopen prog 1\n" + codes + "close\n",
+                                  "open prog 1\n" + codes + "if (P1 > 2)\n" + codes + "else\nX5\nclose\n", "open prog 1\nif (P1 > 2)\n\n" + codes + "close\n", "open plc 1\n" + codes + "close\n",
+                                  "open prog 1\nswitch (P1)\n{\ncase 1:\n" + codes + "break\n}\nclose\n", "open prog 1\n" + codes + "local G2 = 5;\nG2 = 6\nclose\n"}) {
+    const Compiled fast = compile(text, true), slow = compile(text, false);
+    INFO(text.substr(0, 60));
+    CHECK(fast.messages == slow.messages);
+    REQUIRE(fast.module.has_value() == slow.module.has_value());
+    CHECK(fast.listing == slow.listing);
+  }
 }
 
 TEST_CASE("plain moves: rows run as the same lines one by one", "[property]") {

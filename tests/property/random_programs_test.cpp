@@ -1,7 +1,9 @@
 // Compiler and interpreter together mean what a slow walk over the program means: random structured programs, printed as
 // script, compiled, executed plain and fused, and compared with tests/reference/random_program_walk.cpp.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "compiler/bytecode/object_file.h"
@@ -15,6 +17,8 @@ using pmac::reference::Outcome;
 using pmac::reference::RandomProgram;
 
 namespace {
+
+constexpr std::size_t kFirstGlobal = 8192;   // P variable of the first name that is declared global
 
 bool same(double left, double right) {
   return (std::isnan(left) && std::isnan(right)) || std::memcmp(&left, &right, sizeof left) == 0;
@@ -42,28 +46,42 @@ Outcome outcome_of(const std::shared_ptr<const Module>& module) {
   outcome.finished = result.stop == RunStop::kEnded;
   for (std::size_t i = 0; i < outcome.p.size(); ++i) outcome.p[i] = p[pmac::reference::kFirstP + i];
   for (std::size_t i = 0; i < outcome.q.size(); ++i) outcome.q[i] = q[pmac::reference::kFirstQ + i];
+  for (std::size_t i = 0; i < outcome.m.size(); ++i) outcome.m[i] = host.m[static_cast<int>(pmac::reference::kFirstM + i)];
+  for (std::size_t i = 0; i < outcome.row.size(); ++i) outcome.row[i] = p[kFirstGlobal + i];
   return outcome;
 }
 
+std::vector<double> variables_of(const Outcome& outcome) {
+  std::vector<double> all(outcome.p.begin(), outcome.p.end());
+  all.insert(all.end(), outcome.q.begin(), outcome.q.end());
+  all.insert(all.end(), outcome.m.begin(), outcome.m.end());
+  all.insert(all.end(), outcome.row.begin(), outcome.row.end());
+  return all;
+}
+
 bool same(const Outcome& left, const Outcome& right) {
-  bool result = left.finished == right.finished;
-  for (std::size_t i = 0; i < left.p.size(); ++i) result = result && same(left.p[i], right.p[i]);
-  for (std::size_t i = 0; i < left.q.size(); ++i) result = result && same(left.q[i], right.q[i]);
-  return result;
+  const std::vector<double> a = variables_of(left), b = variables_of(right);
+  return left.finished == right.finished && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return same(x, y); });
 }
 
 std::string text_of(const Outcome& outcome) {
   std::string text = outcome.finished ? "" : "not finished ";
-  for (const double value : outcome.p) text += number_text(value) + " ";
-  for (const double value : outcome.q) text += number_text(value) + " ";
+  for (const double value : variables_of(outcome)) text += number_text(value) + " ";
   return text;
+}
+
+/// How many programs: PMAC_FUZZ_PROGRAMS, and the seed of the first one: PMAC_FUZZ_SEED.
+std::uint32_t number_from(const char* variable, std::uint32_t otherwise) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? otherwise : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
 }
 
 }  // namespace
 
 TEST_CASE("random programs: compiled and interpreted as the plain walk does it", "[property]") {
-  int compared = 0;
-  for (std::uint32_t seed = 1; seed <= 500; ++seed) {
+  const std::uint32_t first = number_from("PMAC_FUZZ_SEED", 1), count = number_from("PMAC_FUZZ_PROGRAMS", 2000);
+  std::uint32_t compared = 0;
+  for (std::uint32_t seed = first; seed < first + count; ++seed) {
     const RandomProgram program = pmac::reference::random_program(seed);
     const Outcome expected = pmac::reference::execute(program);
     if (!expected.finished) continue;
@@ -79,7 +97,7 @@ TEST_CASE("random programs: compiled and interpreted as the plain walk does it",
     if (!same(outcome_of(std::make_shared<const Module>(fused)), expected)) FAIL("fused, seed " << seed << "\n" << script);
     ++compared;
   }
-  CHECK(compared > 400);
+  CHECK(compared > count / 10 * 8);
 }
 
 TEST_CASE("random programs: the object file gives the same module", "[property]") {

@@ -16,6 +16,11 @@ inline constexpr int kFirstP = 100;     // P100 .. P107
 inline constexpr int kPVariables = 8;
 inline constexpr int kFirstQ = 20;      // Q20 .. Q23
 inline constexpr int kQVariables = 4;
+inline constexpr int kFirstM = 40;      // M40 .. M43
+inline constexpr int kMVariables = 4;
+inline constexpr int kFirstL = 20;      // L20 .. L23 of the program, by number
+inline constexpr int kRow = 8;          // global Row(8)
+inline constexpr int kList = 4;         // local list(4), of the program and of the subprogram
 
 struct Expression;
 struct Statement;
@@ -23,9 +28,9 @@ using ExpressionPtr = std::shared_ptr<const Expression>;
 using Block = std::vector<std::shared_ptr<const Statement>>;
 
 struct Expression {
-  enum class Kind { kNumber, kLocal, kP, kQ, kComputedP, kUnary, kBinary, kFunction } kind = Kind::kNumber;
+  enum class Kind { kNumber, kLocal, kP, kQ, kComputedP, kM, kL, kRow, kList, kUnary, kBinary, kFunction } kind = Kind::kNumber;
   double number = 0;                    // kNumber
-  int variable = 0;                     // kLocal: 0-3; kP, kQ: from kFirst...
+  int variable = 0;                     // kLocal: 0-3; kP, kQ, kM, kL: from kFirst...; kComputedP, kRow, kList: the index is an operand
   std::string text;                     // operator or function name
   std::vector<ExpressionPtr> operands;
 };
@@ -38,7 +43,7 @@ struct Condition {
 };
 
 struct Statement {
-  enum class Kind { kAssign, kIf, kWhile, kDo, kSwitch, kGosub, kCall, kBreakIf, kContinueIf } kind = Kind::kAssign;
+  enum class Kind { kAssign, kIf, kWhile, kDo, kSwitch, kGosub, kCall, kCallsub, kBreakIf, kContinueIf } kind = Kind::kAssign;
   ExpressionPtr target, value;          // kAssign; value: also of kSwitch
   std::string text;                     // assignment operator
   std::shared_ptr<const Condition> condition;
@@ -47,12 +52,23 @@ struct Statement {
   std::vector<bool> falls;
   int counter = 0;                      // kWhile, kDo: number of the loop; P{1000 + counter} bounds it
   int routine = 0;                      // kGosub: 0 or 1
+  bool bare = false;                    // kIf: one assignment a branch, without braces
+};
+
+/// N3000 and on: what is done there, and where it goes on; -1: behind the last one.
+struct JumpBlock {
+  Block body;
+  std::shared_ptr<const Condition> condition;
+  int if_true = -1, otherwise = -1;
+  bool computed = false;                // goto (3000 + ...)
 };
 
 struct RandomProgram {
   Block body;
-  std::array<Block, 2> routines;        // N1000: and N1001:
-  Block subprogram;                     // subprog Work(a, b, &c) with a local d
+  std::vector<JumpBlock> jumps;         // behind the body; the P variable kJumpCount bounds them
+  std::array<Block, 2> routines;        // N1000: and N1001:; the second one calls the first one
+  Block own_frame;                      // N1002:, for callsub with two arguments
+  Block subprogram;                     // subprog Work(a, b, &c) with locals d and list(4)
 };
 
 RandomProgram random_program(std::uint32_t seed);
@@ -60,11 +76,16 @@ RandomProgram random_program(std::uint32_t seed);
 /// The program as text: open subprog ... close, open prog 1 ... close.
 std::string to_script(const RandomProgram& program);
 
+inline constexpr int kJumpCount = 999;  // P999
+inline constexpr int kMostJumps = 12;
+
 /// What the variables hold afterwards.
 struct Outcome {
   bool finished = true;                 // false: more than the step limit, the variables mean nothing
   std::array<double, kPVariables> p{};
   std::array<double, kQVariables> q{};
+  std::array<double, kMVariables> m{};
+  std::array<double, kRow> row{};
 };
 Outcome execute(const RandomProgram& program);
 

@@ -55,6 +55,16 @@ double binary(const std::string& op, double a, double b) {
   return shift(a, b, op == "<<");
 }
 
+using OneArgument = double (*)(double);
+OneArgument library_function(const std::string& name) {
+  static const std::map<std::string, OneArgument> kFunctions = {
+      {"sin", std::sin}, {"cos", std::cos}, {"tan", std::tan}, {"asin", std::asin}, {"acos", std::acos}, {"atan", std::atan},
+      {"sinh", std::sinh}, {"cosh", std::cosh}, {"tanh", std::tanh}, {"asinh", std::asinh}, {"acosh", std::acosh}, {"atanh", std::atanh},
+      {"exp", std::exp}, {"exp2", std::exp2}, {"ln", std::log}, {"log", std::log}, {"log2", std::log2}, {"log10", std::log10},
+      {"cbrt", std::cbrt}, {"rnd", std::round}};
+  return kFunctions.at(name);
+}
+
 double function(const std::string& name, const std::vector<double>& x) {
   if (name == "abs") return std::fabs(x[0]);
   if (name == "floor" || name == "int") return std::floor(x[0]);
@@ -64,7 +74,11 @@ double function(const std::string& name, const std::vector<double>& x) {
   if (name == "rint") return std::nearbyint(x[0]);
   if (name == "isnan") return std::isnan(x[0]) ? 1 : 0;
   if (name == "madd") return x[0] * x[1] + x[2];
-  return std::fmod(x[0], x[1]);
+  if (name == "rem") return std::fmod(x[0], x[1]);
+  if (name == "pow") return std::pow(x[0], x[1]);
+  if (name == "atan2") return std::atan2(x[0], x[1]);
+  if (name == "qrrt") return std::sqrt(std::sqrt(x[0]));
+  return library_function(name)(x[0]);
 }
 
 bool compare(const std::string& op, double a, double b) {
@@ -88,7 +102,12 @@ class Walker {
   Outcome outcome;
   void run() {
     execute(program_.body);
-    for (int i = 0; i < kLocals; ++i) outcome.p[static_cast<std::size_t>(4 + i)] += locals_[static_cast<std::size_t>(i)];
+    follow_jumps();
+    for (std::size_t i = 0; i < kLocals; ++i) {
+      outcome.p[4 + i] += frame_.locals[i];
+      outcome.m[i] += frame_.numbered[i];
+      outcome.row[i] += frame_.list[i];
+    }
   }
 
  private:
@@ -101,21 +120,30 @@ class Walker {
   void assign(const Statement& statement);
   Leave execute(const Block& block);
   Leave execute(const Statement& statement);
+  void follow_jumps();
   void loop(const Statement& statement);
-  void select(const Statement& statement);
+  Leave select(const Statement& statement);
   void call(const Statement& statement);
+  void call_with_own_frame(const Statement& statement);
+
+  struct Frame { std::array<double, kLocals> locals{}, numbered{}, list{}; };
 
   const RandomProgram& program_;
-  std::array<double, kLocals> locals_{};
+  Frame frame_;
   int steps_ = 0;
 };
 
 double& Walker::variable(const Expression& expression) {
   const auto i = static_cast<std::size_t>(expression.variable);
-  if (expression.kind == Expression::Kind::kLocal) return locals_[i];
+  const auto index = [&](int mask) { return static_cast<std::size_t>(to_integer(value(*expression.operands[0])) & mask); };
+  if (expression.kind == Expression::Kind::kLocal) return frame_.locals[i];
   if (expression.kind == Expression::Kind::kP) return outcome.p[i];
   if (expression.kind == Expression::Kind::kQ) return outcome.q[i];
-  return outcome.p[static_cast<std::size_t>(4 + (to_integer(value(*expression.operands[0])) & 3))];
+  if (expression.kind == Expression::Kind::kM) return outcome.m[i];
+  if (expression.kind == Expression::Kind::kL) return frame_.numbered[i];
+  if (expression.kind == Expression::Kind::kRow) return outcome.row[index(kRow - 1)];
+  if (expression.kind == Expression::Kind::kList) return frame_.list[index(kList - 1)];
+  return outcome.p[4 + index(3)];
 }
 
 double Walker::value(const Expression& expression) {
@@ -158,7 +186,7 @@ void Walker::assign(const Statement& statement) {
   }
   const double right = value(*statement.value);
   double& target = variable(*statement.target);
-  target = statement.text == "=" ? right : binary(statement.text.substr(0, 1), target, right);
+  target = statement.text == "=" ? right : binary(statement.text.substr(0, statement.text.size() - 1), target, right);
 }
 
 void Walker::loop(const Statement& statement) {
@@ -172,25 +200,47 @@ void Walker::loop(const Statement& statement) {
   }
 }
 
-void Walker::select(const Statement& statement) {
+void Walker::follow_jumps() {
+  int at = program_.jumps.empty() ? -1 : 0;
+  for (int count = 1; at >= 0 && count <= kMostJumps; ++count) {
+    const JumpBlock& jump = program_.jumps[static_cast<std::size_t>(at)];
+    execute(jump.body);
+    at = holds(*jump.condition) ? jump.if_true : jump.otherwise;
+  }
+}
+
+/// break leaves the switch, continue what is around it.
+Leave Walker::select(const Statement& statement) {
   const double selector = static_cast<double>(to_integer(value(*statement.value)));  // truncated as operands of & are
+  const auto leaves = [](Leave leave) { return leave == Leave::kBreak ? Leave::kNo : leave; };
   bool is_in = false;
   for (std::size_t i = 0; i < statement.cases.size(); ++i) {
     is_in = is_in || selector == statement.cases[i].first;
     if (!is_in) continue;
-    execute(statement.cases[i].second);
-    if (!statement.falls[i]) return;
+    if (const Leave leave = execute(statement.cases[i].second); leave != Leave::kNo) return leaves(leave);
+    if (!statement.falls[i]) return Leave::kNo;
   }
-  execute(statement.otherwise);
+  return leaves(execute(statement.otherwise));
 }
 
 void Walker::call(const Statement& statement) {
-  const std::array<double, kLocals> saved = locals_;
-  locals_ = {value(*statement.value), outcome.p[0], variable(*statement.target), 0};
+  const Frame saved = frame_;
+  Frame inside;
+  inside.locals = {value(*statement.value), outcome.p[0], variable(*statement.target), 0};
+  frame_ = inside;
   execute(program_.subprogram);
-  const double result = locals_[2];
-  locals_ = saved;
+  const double result = frame_.locals[2];
+  frame_ = saved;
   variable(*statement.target) = result;
+}
+
+void Walker::call_with_own_frame(const Statement& statement) {
+  const Frame saved = frame_;
+  Frame inside;
+  inside.locals = {value(*statement.value), outcome.p[0], 0, 0};
+  frame_ = inside;
+  execute(program_.own_frame);
+  frame_ = saved;
 }
 
 Leave Walker::execute(const Statement& statement) {
@@ -200,8 +250,12 @@ Leave Walker::execute(const Statement& statement) {
     case Statement::Kind::kIf: return execute(holds(*statement.condition) ? statement.body : statement.otherwise);
     case Statement::Kind::kWhile:
     case Statement::Kind::kDo: loop(statement); return Leave::kNo;
-    case Statement::Kind::kSwitch: select(statement); return Leave::kNo;
-    case Statement::Kind::kGosub: execute(program_.routines[static_cast<std::size_t>(statement.routine)]); return Leave::kNo;
+    case Statement::Kind::kSwitch: return select(statement);
+    case Statement::Kind::kGosub:
+      execute(program_.routines[static_cast<std::size_t>(statement.routine)]);
+      if (statement.routine == 1) execute(program_.routines[0]);
+      return Leave::kNo;
+    case Statement::Kind::kCallsub: call_with_own_frame(statement); return Leave::kNo;
     case Statement::Kind::kCall: call(statement); return Leave::kNo;
     case Statement::Kind::kBreakIf: return holds(*statement.condition) ? Leave::kBreak : Leave::kNo;
     case Statement::Kind::kContinueIf: return holds(*statement.condition) ? Leave::kContinue : Leave::kNo;

@@ -15,10 +15,10 @@ struct Frontend::State {
 
   /// The text as it is, or with its plain moves written out where it declares names that these lines could use.
   ExpandedText with_safe_moves(ExpandedText expanded) const {
-    if (!expanded.has_plain_moves()) return expanded;
+    if (!expanded.has_plain_moves() && !expanded.has_plain_lines()) return expanded;
     DeclaredNames later = names;
-    lex(expanded, later);
-    return later.may_change_moves ? expanded.with_moves_written_out(sources) : std::move(expanded);
+    lex(expanded.text_only(), later);
+    return later.may_change_moves || (expanded.has_plain_lines() && later.may_change_lines) ? expanded.with_moves_written_out(sources) : std::move(expanded);
   }
 
   source::SourceManager& sources;
@@ -49,9 +49,10 @@ void Frontend::read_plain_moves(bool on) { state_->reads_plain_moves = on; }
 
 ir::Unit Frontend::read(const std::string& name, std::string text) {
   state_->names.local.clear();
-  state_->preprocessor.read_plain_moves(state_->reads_plain_moves && !state_->names.may_change_moves);
+  const bool plain = state_->reads_plain_moves && !state_->names.may_change_moves;
+  state_->preprocessor.read_plain_text(plain, plain && !state_->names.may_change_lines);
   ExpandedText expanded = state_->expand(name, std::move(text));
-  state_->preprocessor.read_plain_moves(false);
+  state_->preprocessor.read_plain_text(false, false);
   const auto tree = parse(state_->with_safe_moves(std::move(expanded)), state_->names, state_->diagnostics);
   return Lowering(*tree, state_->diagnostics).lower_file(tree->root);
 }

@@ -52,9 +52,15 @@ void Lowering::lower_motion_line(P::MotionLineContext* line, ir::Body& out) {
   if (line->move()) lower_move(line->move(), out);
 }
 
-/// Lines that the fast path has read (plain_moves.h).
+/// Lines that the fast paths have read (plain_moves.h, plain_lines.h).
 void Lowering::lower_plain_moves(P::StatementContext* statement, ir::Body& out) {
-  const ir::MoveRows* rows = tree_.expanded.plain_moves_at(statement->start->getStartIndex());
+  const std::size_t at = statement->start->getStartIndex();
+  if (ir::Body* lines = tree_.expanded.plain_lines_at(at)) {
+    std::move(lines->begin(), lines->end(), std::back_inserter(out));
+    lines->clear();
+    return;
+  }
+  const ir::MoveRows* rows = tree_.expanded.plain_moves_at(at);
   if (rows) return out.push_back(ir::make_stmt(span_of(statement), *rows));
   diagnostics_.error("PM2001", span_of(statement), "this control character cannot stand in a program");
 }

@@ -1,5 +1,6 @@
 #include "compiler/frontend/power_pmac/macros.h"
 
+#include "compiler/frontend/power_pmac/plain_lines.h"
 #include "compiler/frontend/power_pmac/plain_moves.h"
 
 #include <fmt/format.h>
@@ -49,6 +50,7 @@ void MacroTable::define(Macro macro) {
   }
   std::string name = macro.name;
   move_like_names_ = move_like_names_ || reads_as_move_word(name);
+  line_like_names_ = line_like_names_ || reads_as_line_word(name);
   macros_.insert_or_assign(std::move(name), std::move(macro));
 }
 

@@ -57,6 +57,8 @@ class MacroTable {
   bool is_defined(std::string_view name) const;
   /// A macro has a name that plain move lines could use: X10.
   bool may_change_moves() const { return move_like_names_; }
+  /// The same of other plain lines: G1, N5.
+  bool may_change_lines() const { return line_like_names_; }
 
   /// Expands the tokens of a line, or of several where the arguments of a call go on.
   PreprocessorTokens expand(const PreprocessorTokens& line);
@@ -92,6 +94,7 @@ class MacroTable {
   std::vector<List> lists_;
   std::deque<std::string> texts_;   // of tokens that # and ## made
   bool move_like_names_ = false;    // some macro was defined with such a name
+  bool line_like_names_ = false;
   int argument_depth_ = 0;          // calls inside the arguments of calls, at the moment
   std::size_t produced_ = 0;        // tokens made for the current line: stops explosive macros
 };

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+
+#include "compiler/frontend/power_pmac/plain_number.h"
 
 namespace pmac::compiler::power_pmac {
 namespace {
@@ -40,12 +41,7 @@ const LetterCodes& letter_codes() {
   return codes;
 }
 
-bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
-bool is_letter(char c) { return static_cast<unsigned char>((c | 0x20) - 'a') < 26; }
 std::size_t letter_index(char c) { return static_cast<std::size_t>((c | 0x20) - 'a'); }
-
-constexpr std::array<double, 23> kPowersOf10 = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                                1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /// Reads the words of one line, left to right.
 class LineReader {
@@ -59,7 +55,7 @@ class LineReader {
     while (at_ < end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
     if (at_ == end_ || !is_letter(*at_)) return line_end();
     word_begin_ = at_;
-    if (!read_letters() || !read_number()) return Step::kNotPlain;
+    if (!read_letters() || !read_number()) return at_ = word_begin_, Step::kNotPlain;
     return Step::kWord;
   }
 
@@ -87,33 +83,11 @@ class LineReader {
     return code_ != kNoWord;
   }
 
-  /// [+-] digits [. digits], or [+-] . digits. What the grammar calls a number and has more to it is not plain.
   bool read_number() {
     while (at_ < end_ && *at_ == ' ') ++at_;
-    const bool negative = at_ < end_ && *at_ == '-';
-    if (at_ < end_ && (*at_ == '-' || *at_ == '+')) ++at_;
-    const char* const begin = at_;
-    std::uint64_t digits = 0;
-    while (at_ < end_ && is_digit(*at_)) digits = digits * 10 + static_cast<unsigned>(*at_++ - '0');
-    const char* const point = at_;
-    std::size_t decimals = 0;
-    if (at_ < end_ && *at_ == '.') {
-      ++at_;
-      while (at_ < end_ && is_digit(*at_)) digits = digits * 10 + static_cast<unsigned>(*at_++ - '0');
-      decimals = static_cast<std::size_t>(at_ - point) - 1;
-    }
-    const auto length = static_cast<std::size_t>(at_ - begin);
-    const bool has_digits = point > begin || decimals > 0;
-    if (!has_digits || (at_ < end_ && goes_on(*at_))) return false;
-    // up to 15 digits the quotient of two exact numbers is the nearest number, as from_chars gives it
-    if (length <= 16 && digits < 1'000'000'000'000'000) value_ = static_cast<double>(digits) / kPowersOf10[decimals];
-    else if (std::from_chars(begin, at_, value_).ec != std::errc()) return false;
-    if (negative) value_ = -value_;
-    return true;
+    at_ = read_plain_number(at_, end_, value_);
+    return at_ != nullptr;
   }
-
-  /// A letter begins the next word, except e: that may be an exponent.
-  static bool goes_on(char c) { return c == '.' || c == '_' || c == 'e' || c == 'E'; }
 
   const char* at_;
   const char* end_;

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <utility>
 
+#include "compiler/frontend/power_pmac/plain_lines.h"
 #include "compiler/frontend/power_pmac/plain_moves.h"
 #include "compiler/frontend/power_pmac/turbo_text.h"
 
@@ -71,6 +72,16 @@ void ExpandedText::append_plain_moves(ir::MoveRows moves, const source::Span& sp
   append(std::string{kPlainMovesMark, '\n'}, span, false);
 }
 
+void ExpandedText::append_plain_lines(ir::Body statements, const source::Span& span) {
+  lines_.emplace(text_.size(), std::make_unique<ir::Body>(std::move(statements)));
+  append(std::string{kPlainMovesMark, '\n'}, span, false);
+}
+
+ir::Body* ExpandedText::plain_lines_at(std::size_t offset) const {
+  const auto found = lines_.find(offset);
+  return found == lines_.end() ? nullptr : found->second.get();
+}
+
 const ir::MoveRows* ExpandedText::plain_moves_at(std::size_t offset) const {
   const auto found = moves_.find(offset);
   return found == moves_.end() ? nullptr : &found->second;
@@ -81,20 +92,28 @@ ExpandedText ExpandedText::with_moves_written_out(const source::SourceManager& s
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const Segment& segment = segments_[i];
     const std::size_t end = i + 1 < segments_.size() ? segments_[i + 1].begin : text_.size();
-    if (!moves_.contains(segment.begin)) {
+    if (!moves_.contains(segment.begin) && !lines_.contains(segment.begin)) {
       result.append(std::string_view(text_).substr(segment.begin, end - segment.begin), segment.span, segment.exact);
       continue;
     }
     const std::string_view file = sources.file(segment.span.file).text;
     for (std::size_t at = segment.span.begin; at < segment.span.end;) {
       const std::size_t line_end = file.find('\n', at);
-      const std::size_t code_end = std::min(file.find("//", at), line_end);
+      const std::size_t comment = file.substr(at, line_end - at).find("//");
+      const std::size_t code_end = comment == std::string_view::npos ? line_end : at + comment;
       const auto place = [&](std::size_t begin, std::size_t last) { return source::Span{segment.span.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(last), -1}; };
       result.append(file.substr(at, code_end - at), place(at, code_end), true);
       result.append("\n", place(line_end, line_end + 1), true);
       at = line_end + 1;
     }
   }
+  return result;
+}
+
+ExpandedText ExpandedText::text_only() const {
+  ExpandedText result;
+  result.text_ = text_;
+  result.segments_ = segments_;
   return result;
 }
 
@@ -160,7 +179,7 @@ void Preprocessor::run_file(std::int32_t file) {
     follow_program(line);
     if (!take_directive(line) && is_active()) emit_line(std::move(line), file, cursor);
     else out_->append("\n", {file, static_cast<std::uint32_t>(cursor - 1), static_cast<std::uint32_t>(cursor), -1}, true);
-    if (in_program_ && line_begin >= moves_tried_) take_plain_moves(file, cursor);
+    if (in_program_ && line_begin >= plain_tried_) take_plain_text(file, cursor);
     if (out_->text().size() <= kMaxExpandedBytes) continue;
     diagnostics_.error("PM1012", {file, static_cast<std::uint32_t>(cursor - 1), static_cast<std::uint32_t>(cursor), -1}, fmt::format("this file expands to more than {} MiB of text", kMaxExpandedBytes >> 20));
     break;
@@ -187,22 +206,40 @@ void Preprocessor::follow_program(const Tokens& line) {
   }
 }
 
-/// The fast path: the plain move lines from the cursor on, when they are many. The line in front of them went through the grammar, so
-/// that a statement which is open there ends with it, and not with them.
-void Preprocessor::take_plain_moves(std::int32_t file, std::size_t& cursor) {
+/// The fast paths: the plain lines from the cursor on, when they are many. The line in front of them went through the grammar, or was
+/// one of them, so that a statement which is open there ends with it.
+void Preprocessor::take_plain_text(std::int32_t file, std::size_t& cursor) {
   const std::string_view text = sources_.file(file).text;
-  const bool allowed = moves_wanted_ && is_active() && !recording_ && !macros_.may_change_moves();
-  std::size_t line_end = 0;
+  if (!is_active() || recording_ || cursor < 2) return;
+  const bool moves = moves_wanted_ && !macros_.may_change_moves(), lines = lines_wanted_ && !macros_.may_change_lines();
   const std::size_t last_line = text.rfind('\n', cursor - 2);
-  const std::size_t before = last_line == std::string_view::npos || cursor < 2 ? 0 : last_line + 1;
-  if (!allowed || !is_plain_move(text, before, line_end) || line_end != cursor) return;
+  std::size_t line_end = 0;
+  const std::size_t before = last_line == std::string_view::npos ? 0 : last_line + 1;
+  const bool behind_move = moves && is_plain_move(text, before, line_end) && line_end == cursor;
+  if (!behind_move && !(lines && is_plain_line(text, before, line_end) && line_end == cursor)) return;
+  bool taken = true;
+  while (taken) taken = (moves && take_plain_moves(file, cursor)) || (lines && take_plain_lines(file, cursor));
+}
+
+bool Preprocessor::take_plain_moves(std::int32_t file, std::size_t& cursor) {
+  const std::string_view text = sources_.file(file).text;
   const PlainMoveLines lines = count_plain_moves(text, cursor, kMinPlainMoves);
-  moves_tried_ = lines.end;
-  if (lines.count < kMinPlainMoves) return;
+  plain_tried_ = std::max(plain_tried_, lines.end);
+  if (lines.count < kMinPlainMoves) return false;
   std::size_t end = cursor;
   ir::MoveRows moves = power_pmac::read_plain_moves(text, cursor, file, sources_.line_column(file, static_cast<std::uint32_t>(cursor)).line, end);
   out_->append_plain_moves(std::move(moves), {file, static_cast<std::uint32_t>(cursor), static_cast<std::uint32_t>(end), -1});
-  cursor = moves_tried_ = end;
+  cursor = plain_tried_ = end;
+  return true;
+}
+
+bool Preprocessor::take_plain_lines(std::int32_t file, std::size_t& cursor) {
+  PlainLines lines = read_plain_lines(sources_.file(file).text, cursor, file);
+  plain_tried_ = std::max(plain_tried_, lines.tried);
+  if (lines.lines < kMinPlainMoves) return false;
+  out_->append_plain_lines(std::move(lines.body), {file, static_cast<std::uint32_t>(cursor), static_cast<std::uint32_t>(lines.end), -1});
+  cursor = plain_tried_ = lines.end;
+  return true;
 }
 
 bool Preprocessor::begins_turbo_comment(std::string_view text, std::size_t at) const {

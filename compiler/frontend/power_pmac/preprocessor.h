@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,12 +24,19 @@ class ExpandedText {
   void append(std::string_view text, const source::Span& span, bool exact);
   /// Appends the mark of plain move lines, and a line end; span is that of the lines.
   void append_plain_moves(ir::MoveRows moves, const source::Span& span);
+  /// The same for other lines that were read in front of the grammar (plain_lines.h).
+  void append_plain_lines(ir::Body statements, const source::Span& span);
   const std::string& text() const { return text_; }
   bool has_plain_moves() const { return !moves_.empty(); }
+  bool has_plain_lines() const { return !lines_.empty(); }
   /// The moves whose mark stands at the offset, or null.
   const ir::MoveRows* plain_moves_at(std::size_t offset) const;
+  /// The statements whose mark stands at the offset, to be taken out, or null.
+  ir::Body* plain_lines_at(std::size_t offset) const;
   /// The same text with the lines in place of the marks, as without the fast path.
   ExpandedText with_moves_written_out(const source::SourceManager& sources) const;
+  /// The text alone, for a look ahead.
+  ExpandedText text_only() const;
   /// Place of bytes [begin, end) of the text.
   source::Span span_of(std::size_t begin, std::size_t end) const;
 
@@ -38,6 +46,7 @@ class ExpandedText {
   std::string text_;
   std::vector<Segment> segments_;
   std::map<std::size_t, ir::MoveRows> moves_;  // by the offset of their mark
+  std::map<std::size_t, std::unique_ptr<ir::Body>> lines_;
 };
 
 class Preprocessor {
@@ -47,8 +56,8 @@ class Preprocessor {
   /// Expands a file that the source manager knows. Macros stay known for the next file.
   ExpandedText run(std::int32_t file);
   void set_max_include_depth(int depth) { max_include_depth_ = depth; }
-  /// From now on long runs of plain move lines are read here (plain_moves.h), unless lines are recorded.
-  void read_plain_moves(bool on) { moves_wanted_ = on; }
+  /// From now on long runs of plain move lines are read here (plain_moves.h), and of other plain lines (plain_lines.h), unless lines are recorded.
+  void read_plain_text(bool moves, bool lines) { moves_wanted_ = moves, lines_wanted_ = lines; }
   /// As -D name=text.
   void define(const std::string& name, const std::string& text);
   /// Every #define of the files so far.
@@ -63,7 +72,9 @@ class Preprocessor {
 
   void run_file(std::int32_t file);
   void follow_program(const Tokens& line);
-  void take_plain_moves(std::int32_t file, std::size_t& cursor);
+  void take_plain_text(std::int32_t file, std::size_t& cursor);
+  bool take_plain_moves(std::int32_t file, std::size_t& cursor);
+  bool take_plain_lines(std::int32_t file, std::size_t& cursor);
   Tokens next_line(std::int32_t file, std::size_t& cursor);
   bool begins_turbo_comment(std::string_view text, std::size_t at) const;
   void report_turbo_comment(std::int32_t file, std::size_t at);
@@ -93,9 +104,10 @@ class Preprocessor {
   std::vector<Conditional> conditionals_;
   std::vector<SourceLine> recorded_;
   bool recording_ = false;
-  bool moves_wanted_ = false;      // the fast path is on
+  bool moves_wanted_ = false;      // the fast paths are on
+  bool lines_wanted_ = false;
   bool in_program_ = false;        // inside open prog or open subprog ... close, by what begins the lines
-  std::size_t moves_tried_ = 0;    // plain lines up to here are too few
+  std::size_t plain_tried_ = 0;    // plain lines up to here are too few
   ExpandedText* out_ = nullptr;
   bool turbo_file_ = false;   // the file at hand has the comments of Turbo PMAC
   int include_depth_ = 0;

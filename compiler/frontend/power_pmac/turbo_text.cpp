@@ -56,6 +56,9 @@ bool is_keyword(const std::string& word) {
   return std::binary_search(names.begin(), names.end(), std::string_view(word));
 }
 
+/// False for most lines of most files: none of the three kinds of lines begins like that.
+bool may_tell(std::string_view line) { return !line.empty() && std::string_view("eEmM;").find(line.front()) != std::string_view::npos; }
+
 }  // namespace
 
 bool is_turbo_text(std::string_view text) {
@@ -63,9 +66,10 @@ bool is_turbo_text(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view line = trimmed(text.substr(at, end - at));
+    at = end + 1;
+    if (!may_tell(line)) continue;
     if (begins_with_end_word(line) || defines_memory_pointer(line)) return true;
     if (is_comment_line(line) && ++comments >= 2) return true;
-    at = end + 1;
   }
   return false;
 }

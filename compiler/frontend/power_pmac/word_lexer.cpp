@@ -1,4 +1,5 @@
 #include "compiler/frontend/power_pmac/frontend.h"
+#include "compiler/frontend/power_pmac/plain_lines.h"
 #include "compiler/frontend/power_pmac/plain_moves.h"
 #include "compiler/frontend/power_pmac/word_lexer.h"
 
@@ -264,12 +265,17 @@ WordLexer::Word WordLexer::split_program_name(std::string_view word, std::size_t
 
 void DeclaredNames::add_global(std::string_view name) {
   global.emplace(name);
-  may_change_moves = may_change_moves || reads_as_move_word(name);
+  note(name);
 }
 
 void DeclaredNames::add_local(std::string_view name) {
   local.emplace(name);
+  note(name);
+}
+
+void DeclaredNames::note(std::string_view name) {
   may_change_moves = may_change_moves || reads_as_move_word(name);
+  may_change_lines = may_change_lines || reads_as_line_word(name);
 }
 
 void WordLexer::declare(std::string_view name) {

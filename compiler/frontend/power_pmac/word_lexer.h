@@ -20,8 +20,10 @@ struct DeclaredNames {
   std::set<std::string, std::less<>> local;  // of the open buffer
   std::set<std::string, std::less<>> programs;  // of open prog: known behind b, begin and start glued to them
   bool may_change_moves = false;    // one of them is a name that plain move lines could use: X10
+  bool may_change_lines = false;    // or other plain lines: G1
   void add_global(std::string_view name);
   void add_local(std::string_view name);
+  void note(std::string_view name);
   bool contains(std::string_view name) const { return global.contains(name) || local.contains(name); }
 };
 
