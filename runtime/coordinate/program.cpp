@@ -87,7 +87,8 @@ bool CoordSystem::enough_ahead(double time_ms) const {
 
 /// The first real-time interrupt at which enough_ahead() may have become false, and before the horizon.
 double CoordSystem::next_calculation_ms(double time_ms) const {
-  const double in_time_ms = time_base_.time_at(pipeline_.horizon_ms()) - 2 * machine_.rti_period_ms();
+  const double horizon_ms = time_base_.time_at(pipeline_.horizon_ms()), period_ms = machine_.rti_period_ms();
+  const double in_time_ms = time_base_.is_real_time() ? machine_.next_rti_ms(horizon_ms) - 1.5 * period_ms : horizon_ms - 2 * period_ms;  // the last one up to it
   const double until_ms = std::min(time_base_.time_at(pipeline_.enough_until_ms(commands_wanted())), in_time_ms);
   if (until_ms == kNever) return kNever;
   const double next_ms = machine_.next_rti_ms(time_ms);
