@@ -7,6 +7,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "compiler/bytecode/missing.h"
 #include "runtime/answer.h"
 #include "runtime/value_text.h"
 
@@ -130,7 +131,7 @@ std::string motor_answer(Machine::State& s, Runner& runner, ControlVerb verb, co
 
 /// The number that a report is about, or -1 where there is none such.
 int number_of(std::span<const double> arguments, int addressed, int count) {
-  const double given = arguments.empty() || std::isnan(arguments[0]) ? addressed : arguments[0];
+  const double given = arguments.empty() || bytecode::is_missing(arguments[0]) ? addressed : arguments[0];
   return given >= 0 && given < count ? static_cast<int>(given) : -1;
 }
 

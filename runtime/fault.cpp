@@ -23,6 +23,7 @@ int error_status(FaultKind kind) {
     case FaultKind::kCcDistance: return 13;
     case FaultKind::kCcNoIntersection: return 14;
     case FaultKind::kCcNoMoves: return 15;
+    case FaultKind::kInPosition: return 17;
     case FaultKind::kSoftLimit: return 32;
     case FaultKind::kCircleRadius: return 64;
     case FaultKind::kInverseKinematics:

@@ -37,6 +37,7 @@ enum class FaultKind {
   kFollowingError,          // a motor's following error above Motor[].FatalFeLimit
   kOvertravel,              // a motor ran into its overtravel switch
   kAmplifier,               // a motor's amplifier reported a fault
+  kInPosition,              // motors not in position within Coord[].InPosTimeOut
 };
 
 struct [[nodiscard]] Fault {

@@ -91,6 +91,13 @@ class MachineHost : public Host {
     return s_.coord(thread.coord).motion(thread, instruction, registers);
   }
 
+  Flow move_words(Thread& thread, std::span<const std::uint8_t> words, std::span<const double> values) override {
+    Runner& runner = Runner::of(thread);
+    if (runner.kind != RunnerKind::kMotionProgram) return Host::move_words(thread, words, values);
+    s_.coord(runner.number).add_words(words, values);
+    return Flow::kContinue;
+  }
+
   Flow control(Thread& thread, bytecode::ControlVerb verb, std::span<const double> arguments) override {
     s_.catch_up();
     Runner& runner = Runner::of(thread);
@@ -199,6 +206,12 @@ class MachineHost : public Host {
   Machine::State& s_;
 };
 
+/// Of those that are neither saved nor simulated machinery.
+bool needs_finite_value(ElementId id) {
+  return id == ElementId::kMotorProgJogPos || id == ElementId::kSysCdTimer || id == ElementId::kLdataGoBack || id == ElementId::kLdataCmdStatus ||
+         id == ElementId::kGatherEnable;
+}
+
 Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double value) {
   s_.catch_up();
   Runner& runner = Runner::of(thread);
@@ -210,7 +223,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     return Flow::kContinue;
   }
   const bool simulated = a.id >= ElementId::kSimMotorTriggerPos && a.id <= ElementId::kSimMotorFriction;
-  if ((info.access == ElementAccess::kSaved || simulated) && !std::isfinite(value)) {
+  if ((info.access == ElementAccess::kSaved || simulated || needs_finite_value(a.id)) && !std::isfinite(value)) {
     const std::string text = fmt::format("{} cannot be set to {}", element_text(a), std::isnan(value) ? "nan" : "an infinite value");
     if (runner.kind != RunnerKind::kOnline) return fault(thread, FaultKind::kRunTime, text);
     s_.refuse(element_text(a), "error #23: OUT OF RANGE NUMBER: " + text);
@@ -274,7 +287,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
     default: break;
   }
   s_.elements.assign(a, value);
-  if (!(value > 0) || a.id == ElementId::kMotorServoCtrl || a.id == ElementId::kCoordInPosTimeOut)
+  if (!(value > 0) || a.id == ElementId::kMotorServoCtrl)
     if (const std::string reason = why_nonsense(a, value); !reason.empty()) s_.warn(thread.source(), reason);
   const bool of_trigger = a.id >= ElementId::kSimMotorTriggerPos && a.id <= ElementId::kSimMotorFlagInvert;
   if (of_trigger) trigger_moved(s_, s_.motors[a.index[0]]);

@@ -80,6 +80,23 @@ void software_limit(Machine::State& s, Motor& m, bool plus, double commanded_mu)
   m.limit_stop = plus ? Motor::LimitStop::kPlusPosition : Motor::LimitStop::kMinusPosition;
 }
 
+/// The actual position: all motors come to rest with their abort ramps, whatever moves them.
+void actual_limit(Machine::State& s, Motor& m, bool plus, double actual_mu) {
+  CoordSystem* c = coord_of(s, m);
+  const bool in_program = c && c->program_running();
+  const ElementId limit = plus ? ElementId::kMotorMaxPos : ElementId::kMotorMinPos;
+  Fault fault{FaultKind::kSoftLimit, source_of(s, m),
+              fmt::format("the actual position of motor {}, {:.6g} motor units, is beyond Motor[{}].{} = {}; it stops with AbortTa", m.number, actual_mu,
+                          m.number, plus ? "MaxPos" : "MinPos", s.elements.get(limit, static_cast<unsigned>(m.number)))};
+  if (in_program) {
+    c->fail_at_once(s.now_ms, std::move(fault));
+  } else {
+    abort_all(s, m);
+    s.warn(fault.source, fault.detail);
+  }
+  m.limit_stop = plus ? Motor::LimitStop::kPlusPosition : Motor::LimitStop::kMinusPosition;
+}
+
 }  // namespace
 
 void react_to_trips(Machine::State& s) {
@@ -92,6 +109,8 @@ void react_to_trips(Machine::State& s) {
       case Kind::kMinusSwitch: overtravel(s, m, trip.kind == Kind::kPlusSwitch, trip.value_mu); break;
       case Kind::kPlusPosition:
       case Kind::kMinusPosition: software_limit(s, m, trip.kind == Kind::kPlusPosition, trip.value_mu); break;
+      case Kind::kPlusActual:
+      case Kind::kMinusActual: actual_limit(s, m, trip.kind == Kind::kPlusActual, trip.value_mu); break;
       case Kind::kTrigger: trigger_captured(s, m, trip.value_mu); break;
     }
   }

@@ -81,8 +81,8 @@ void move_motor(const Call& call, Motor& m) {
   Machine::State& s = call.s;
   const double now = s.now_ms;
   const bytecode::SourceLine source = call.runner.thread.source();
-  const double value = std::isnan(call.argument(1)) ? s.elements.get(ElementId::kMotorProgJogPos, static_cast<unsigned>(m.number))
-                                                    : call.argument(1);
+  const double given = call.argument(1);
+  const double value = bytecode::is_missing(given) ? s.elements.get(ElementId::kMotorProgJogPos, static_cast<unsigned>(m.number)) : given;
   const double here = m.position_at(now);
   switch (call.verb) {
     case ControlVerb::kJogPlus: call.refusal = jog_endless(s, m, 1, source); break;

@@ -21,7 +21,7 @@ using bytecode::ElementId;
 /// Number of the coordinate system or motor a verb acts on; -1 (with a refusal) where there is none.
 int number_or(const Call& call, int addressed, int limit, const char* what) {
   const double given = call.argument(0);
-  const double number = std::isnan(given) ? addressed : std::trunc(given);
+  const double number = bytecode::is_missing(given) ? addressed : std::trunc(given);
   if (number >= 0 && number < limit) return static_cast<int>(number);
   call.refusal = fmt::format("error #23: OUT OF RANGE NUMBER: there is no {} {}", what, number_text(number));
   return -1;
@@ -279,8 +279,7 @@ Flow execute_for_all(Machine::State& s, Runner& runner, ControlVerb verb, std::s
 }  // namespace
 
 Flow execute_control(Machine::State& s, Runner& runner, ControlVerb verb, std::span<const double> arguments, std::string& refusal) {
-  const bool all = !arguments.empty() && std::isinf(arguments[0]) && verb != ControlVerb::kPset && verb != ControlVerb::kReportPointer && verb != ControlVerb::kReportAlias;
-  if (all) return execute_for_all(s, runner, verb, arguments, refusal);
+  if (!arguments.empty() && bytecode::is_all(arguments[0])) return execute_for_all(s, runner, verb, arguments, refusal);
   if (is_report(verb)) {
     refusal = report(s, runner, verb, arguments);
     return Flow::kContinue;

@@ -1,11 +1,11 @@
 // Inside the execution of control verbs: online.cpp takes those of coordinate systems and PLC programs, motor_verbs.cpp those of motors.
 #pragma once
 
-#include <cmath>
 #include <span>
 #include <string>
 
 #include "compiler/bytecode/control.h"
+#include "compiler/bytecode/missing.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -18,7 +18,7 @@ struct Call {
   std::span<const double> arguments;
   std::string& refusal;
 
-  double argument(std::size_t i) const { return i < arguments.size() ? arguments[i] : std::nan(""); }
+  double argument(std::size_t i) const { return i < arguments.size() ? arguments[i] : bytecode::missing_argument(); }
 };
 
 /// Number of the coordinate system or motor a verb acts on; -1 (with a refusal) where there is none.

@@ -253,6 +253,7 @@ int main(int argc, char** argv) {
       return kExitUsage;
     }
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);   // a file beyond its limit is an error of writing, as on a full disk
     if (is_register_script(options)) return run_register_script(options);
     if (is_card_run(options)) {
       catch_signals();

@@ -42,9 +42,6 @@ std::string why_nonsense(const ElementAddress& element, double value) {
   if (element.id == ElementId::kMotorServoCtrl && value > 1)
     return fmt::format("{} = {} makes a gantry follower of Motor[{}].CmdMotor, which is not simulated; here the motor is an ordinary one. Define it on the "
                        "axis of its leader, as in #{}->1000X", element_text(element), number_text(value), element.index[0], element.index[0]);
-  if (element.id == ElementId::kCoordInPosTimeOut && value > 0)
-    return fmt::format("{} = {}: waits until motors are in position are not simulated; commanded motion comes to rest and goes on. A program may wait "
-                       "itself: while (Coord[{}].InPos == 0) {{}}", element_text(element), number_text(value), element.index[0]);
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.id == element.id; });
   if (row == std::end(kRows) || value > 0 || (value == 0 && row->least == Least::kZero)) return {};
   return fmt::format("{} is set to {}; it is {}; here {}", element_text(element), number_text(value), row->least == Least::kZero ? "0 or more" : "above 0", row->effect);

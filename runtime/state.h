@@ -56,7 +56,7 @@ struct Configuration {
 
 /// What stopped a motor at a servo interrupt. value_mu: following error, actual or commanded position; of a trigger its place (raw).
 struct ServoTrip {
-  enum class Kind { kFollowingError, kAmplifier, kPlusSwitch, kMinusSwitch, kPlusPosition, kMinusPosition, kTrigger };
+  enum class Kind { kFollowingError, kAmplifier, kPlusSwitch, kMinusSwitch, kPlusPosition, kMinusPosition, kPlusActual, kMinusActual, kTrigger };
   int motor = 0;
   Kind kind{};
   double value_mu = 0;

@@ -5,18 +5,18 @@
 
 namespace pmac::bytecode {
 
-/// Verbs of Control. Unless said otherwise argument 0 is the number of the coordinate system, program or motor; nan
-/// means "the one addressed by this thread" (executing coordinate system, Ldata.Coord, Ldata.Motor, or & and #), infinity
-/// means all of them (the list *).
+/// Verbs of Control. Unless said otherwise argument 0 is the number of the coordinate system, program or motor; missing
+/// means "the one addressed by this thread" (executing coordinate system, Ldata.Coord, Ldata.Motor, or & and #), all
+/// means all of them (the list *). missing.h has these two.
 enum class ControlVerb : std::uint16_t {
   // coordinate systems
   kAbort, kBegin /* coord, program[.label] */, kRun, kStep, kStart /* coord, program */, kPause, kHold, kResume,
   kQuickStop, kRetrace, kForward, kEnable, kDisable, kDelayedDisable, kAbortDisable, kTimeBase /* coord, percent */,
   kPmatch, kPset /* axis index, value */, kPclr, kPstore, kPload,
-  // axis values to D(axis index), their mask to D32 (coord, mask of the wanted axes; nan: all)
+  // axis values to D(axis index), their mask to D32 (coord, mask of the wanted axes; missing: all)
   kPread, kVread, kDread, kFread, kTread,
   kDefineLookahead /* coord, segments */, kDeleteLookahead,
-  // motors; a position or distance argument of nan means Motor[].ProgJogPos
+  // motors; a missing position or distance means Motor[].ProgJogPos
   kJogPlus, kJogMinus, kJogStop, kJogTo /* motor, position mu */, kJogBy /* motor, distance mu from commanded */,
   kJogByActual /* motor, distance mu from actual */, kJogToAndKeep /* motor, position */, kJogReturn,
   // the same until the trigger (motor, position or distance, distance from the trigger mu)

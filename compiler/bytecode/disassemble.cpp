@@ -7,6 +7,7 @@
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/function.h"
 #include "compiler/bytecode/letters.h"
+#include "compiler/bytecode/missing.h"
 #include "compiler/bytecode/module_text.h"
 #include "compiler/bytecode/opcode.h"
 
@@ -23,6 +24,8 @@ std::string padded(std::string text, std::size_t width) {
 std::string right_aligned(std::string text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
+
+std::string constant_text(double value) { return is_missing(value) ? "missing" : is_all(value) ? "all" : number_text(value); }
 
 /// Texts of the operands of one instruction. Numbers outside the tables are shown as they are, so that a module that
 /// verify() refuses can be looked at.
@@ -146,7 +149,7 @@ std::string OperandText::text() const {
     case OperandFormat::kReg3: return registers(in_.a, 3) + (in_.imm == 1 ? ", second" : "");
     case OperandFormat::kRegReg: return a_and(reg(in_.b()));
     case OperandFormat::kRegRegReg: return a_and(reg(in_.b()) + ", " + reg(in_.c()));
-    case OperandFormat::kRegConst: return a_and(entry(module_.constants, number_text));
+    case OperandFormat::kRegConst: return a_and(entry(module_.constants, constant_text));
     case OperandFormat::kRegInt: return a_and(std::to_string(in_.imm));
     case OperandFormat::kRegP: return variable("P");
     case OperandFormat::kRegQ: return variable("Q");

@@ -1,11 +1,13 @@
 // Statements.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "compiler/bytecode/card.h"
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "compiler/bytecode/missing.h"
 #include "compiler/bytecode/opcode.h"
 #include "compiler/codegen/program_writer.h"
 
@@ -338,8 +340,10 @@ void ProgramWriter::write(const ir::Control& node, const source::Span&) {
   const Register first = take(count);
   for (Register i = 0; i < count; ++i) {
     const ir::Expr* argument = i < node.arguments.size() ? node.arguments[i].get() : nullptr;
-    if (argument) value_into(*argument, first + i);
-    else load_number(std::numeric_limits<double>::quiet_NaN(), first + i);
+    const auto* number = argument ? std::get_if<ir::Number>(&argument->node) : nullptr;
+    if (number && std::isinf(number->value)) load_number(bytecode::all_of_them(), first + i);   // the list *
+    else if (argument) value_into(*argument, first + i);
+    else load_number(bytecode::missing_argument(), first + i);
   }
   emit_abc(Opcode::kControl, static_cast<Register>(node.verb), first, count);
 }

@@ -4,6 +4,7 @@
 
 #include "compiler/bytecode/control.h"
 #include "compiler/bytecode/element.h"
+#include "compiler/bytecode/missing.h"
 #include "runtime/state.h"
 
 namespace pmac::runtime {
@@ -35,7 +36,8 @@ std::string read_axes(Machine::State& s, int number, ControlVerb verb, double wa
   CoordSystem& coord = s.coord(number);
   if (!coord.map().solvable() && !coord.has_forward()) return fmt::format("error #39: NOT READY TO RUN: coordinate system {}: {}", number, coord.map().reason());
   const AxisVector values = axis_values(s, coord, number, verb);
-  const bool all = !(wanted_axes >= 0 && wanted_axes <= 4294967295.0);
+  const bool all = bytecode::is_missing(wanted_axes);
+  if (!all && !(wanted_axes >= 0 && wanted_axes <= 4294967295.0)) return fmt::format("error #23: OUT OF RANGE NUMBER: a mask of axes of {}", number_text(wanted_axes));
   const std::uint32_t mask = coord.axes_with_motors() & (all ? 0xffffffffu : static_cast<std::uint32_t>(wanted_axes));
   for (std::size_t axis = 0; axis < values.size(); ++axis)
     if (mask >> axis & 1u) thread.d[axis] = values[axis];

@@ -269,6 +269,7 @@ void CoordSystem::drop_program() {
   pvt_goes_on_ = false;
   block_ = {};
   home_motors_.clear();
+  held_back_.reset();
   shaping_ = Shaping::kNone;
   shape_at_ms_ = kNever;
   pause_requested_ = pause_at_rest_ = stepping_ = quick_stopped_ = false;

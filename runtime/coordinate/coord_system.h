@@ -131,6 +131,8 @@ class CoordSystem {
 
   // --- what the program asks for (called by the host) ---------------------------------------------------------------------
   Flow motion(Thread& thread, const bytecode::Instruction& instruction, std::span<const double> registers);
+  /// Words of a move block, as Host::move_words() has them.
+  void add_words(std::span<const std::uint8_t> words, std::span<const double> values);
   /// A move block of a PLC program: rapid whatever the mode, and nobody waits for it.
   Flow plc_move(Thread& thread, const OpenBlock& block);
   Flow queue_assignment(Thread& thread, const bytecode::SyncTarget& target, const ElementAddress& element, double value);
@@ -200,8 +202,8 @@ class CoordSystem {
 
  private:
   enum class Shaping { kNone, kSlower, kFaster, kBack };
-  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kPaused };
-  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kPause, kEnd, kLimit };
+  enum class Phase { kIdle, kCalculating, kToRest, kDwelling, kRapid, kHoming, kSettling, kPaused };
+  enum class AfterRest { kDwell, kRapid, kHome, kHomeZero, kPositions, kNextInterrupt, kSettle, kPause, kEnd, kLimit };
 
   // control.cpp
   std::string start(double time_ms);
@@ -264,6 +266,7 @@ class CoordSystem {
   bool pauses_here() const { return (pause_at_rest_ || (stepping_ && !step_block_)) && !pvt_goes_on(); }
   std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
   Flow start_blendable(Thread& thread, motion::MotionCommand& command);
+  std::optional<Fault> add_blendable(motion::MotionCommand& command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
   void ensure_sequence(double time_ms);
@@ -284,6 +287,13 @@ class CoordSystem {
   void record_executed(double time_ms);
   motion::PipelineConfig config();
   motion::MotorMap motor_map();
+
+  // in_position.cpp
+  bool waits_in_position() const;
+  bool holds_back(const motion::MotionCommand& command);
+  void settle(double time_ms, double dwell_ms);
+  void go_on_settled(double time_ms);
+  std::string who_is_out_of_position();
 
   // offsets.cpp
   std::optional<Fault> select_transform(double number, bytecode::SourceLine source);
@@ -372,6 +382,8 @@ class CoordSystem {
   bool pvt_goes_on_ = false;          // some of it is not 0
   OpenBlock block_;
   double dwell_ms_ = 0;
+  std::optional<motion::MotionCommand> held_back_;  // waits until the motors are in position
+  double settle_until_ms_ = 0, settled_dwell_ms_ = 0;
   std::vector<int> home_motors_;
   int home_motor_ = -1;
   bytecode::SourceLine item_source_;

@@ -173,7 +173,7 @@ std::optional<Fault> set_compensation(MotionParameter parameter, double value, M
     modal.compensation_radius_uu = value;
     return std::nullopt;
   }
-  if (value == 3) return Fault{FaultKind::kNotSimulated, source, "ccmode3, compensation in three dimensions, is not simulated"};
+  if (value == 3) return Fault{FaultKind::kNotSimulated, source, "ccmode3, compensation along surface normals in three dimensions, is not simulated; ccmode1 and ccmode2 compensate in the plane of normal"};
   if (value != 0 && value != 1 && value != 2)
     return Fault{FaultKind::kBadTarget, source, fmt::format("there is no ccmode{}; 0 is off, 1 left, 2 right", number_text(value))};
   modal.compensation_side = static_cast<int>(value);

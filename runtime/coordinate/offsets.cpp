@@ -37,6 +37,7 @@ std::string CoordSystem::change_positions(double time_ms, const PositionChange& 
   if (phase_ == Phase::kPaused) note_pause(time_ms);
   if (change.verb == ControlVerb::kPclr) frame_.position_bias_uu.fill(0);
   if (change.verb == ControlVerb::kPload) frame_.position_bias_uu = frame_.stored_bias_uu;
+  frame_.bias_changed();
   if (change.verb == ControlVerb::kPset) {
     if (!std::isfinite(change.value)) return fmt::format("error #21: ILLEGAL PARAMETER: pset {}{}", bytecode::axis_name(change.axis), number_text(change.value));
     AxisVector values{};

@@ -87,7 +87,8 @@ bool CoordSystem::enough_ahead(double time_ms) const {
 
 /// The first real-time interrupt at which enough_ahead() may have become false, and before the horizon.
 double CoordSystem::next_calculation_ms(double time_ms) const {
-  const double in_time_ms = time_base_.time_at(pipeline_.horizon_ms()) - 2 * machine_.rti_period_ms();
+  const double horizon_ms = time_base_.time_at(pipeline_.horizon_ms()), period_ms = machine_.rti_period_ms();
+  const double in_time_ms = time_base_.is_real_time() ? machine_.next_rti_ms(horizon_ms) - 1.5 * period_ms : horizon_ms - 2 * period_ms;  // the last one up to it
   const double until_ms = std::min(time_base_.time_at(pipeline_.enough_until_ms(commands_wanted())), in_time_ms);
   if (until_ms == kNever) return kNever;
   const double next_ms = machine_.next_rti_ms(time_ms);
@@ -122,7 +123,8 @@ void CoordSystem::motors_arrived(double time_ms) {
   phase_ = Phase::kCalculating;
   if (const std::string refusal = axes_elsewhere ? match_positions(time_ms) : std::string(); !refusal.empty())
     return fail(time_ms, {FaultKind::kForwardKinematics, item_source_, refusal});
-  go_on(time_ms);
+  if (waits_in_position()) settle(time_ms, 0);
+  else go_on(time_ms);
 }
 
 void CoordSystem::service(double time_ms) {
@@ -144,6 +146,7 @@ void CoordSystem::service(double time_ms) {
         record({"dwell", item_source_, number_, -1, item_start_ms_, time_ms, 0});
         go_on(time_ms);
         break;
+      case Phase::kSettling: go_on_settled(time_ms); break;
       case Phase::kRapid:
       case Phase::kHoming:
         if (motors_end_ms() > time_ms) return;
@@ -159,12 +162,14 @@ void CoordSystem::go_on(double time_ms) { pause_requested_ ? pause_here(time_ms)
 
 void CoordSystem::calculate(double time_ms) {
   phase_ = Phase::kCalculating;
-  if (on_path_) {
-    collect_timings();
-    if (enough_ahead(time_ms)) {
-      resume_ms_ = next_calculation_ms(time_ms);
-      return;
-    }
+  if (on_path_ && enough_ahead(time_ms)) {
+    resume_ms_ = next_calculation_ms(time_ms);
+    return;
+  }
+  if (held_back_) {
+    motion::MotionCommand command = *std::exchange(held_back_, std::nullopt);
+    if (auto fault = add_blendable(command)) return fail(time_ms, std::move(*fault));
+    return calculate(time_ms);
   }
   calculated_at_ms_ = time_ms;
   const auto go_back = static_cast<std::int64_t>(machine_.elements.get(ElementId::kCoordGoBack, static_cast<unsigned>(number_)));
@@ -230,6 +235,7 @@ void CoordSystem::at_rest(double time_ms) {
         return fail(time_ms, {FaultKind::kNotReady, item_source_, refusal});
       go_on(time_ms);
       break;
+    case AfterRest::kSettle: settle(time_ms, settled_dwell_ms_); break;
     case AfterRest::kPause: pause_here(time_ms); break;
     case AfterRest::kLimit: break;
     case AfterRest::kDwell: start_dwell(time_ms); break;

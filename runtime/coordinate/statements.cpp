@@ -96,6 +96,10 @@ Flow CoordSystem::give_up(Thread& thread, Fault fault) {
   return Flow::kFault;
 }
 
+void CoordSystem::add_words(std::span<const std::uint8_t> words, std::span<const double> values) {
+  for (std::size_t i = 0; i < words.size(); ++i) block_.add(bytecode::move_word_kind(words[i]), bytecode::move_word_index(words[i]), values[i]);
+}
+
 Flow CoordSystem::end_block(Thread& thread) {
   const Flow flow = execute_block(thread, block_);
   block_.clear();
@@ -154,9 +158,22 @@ std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
 }
 
 Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand& command) {
+  if (holds_back(command)) {
+    held_back_ = command;
+    return stop_item(thread, AfterRest::kSettle);
+  }
+  if (auto fault = add_blendable(command)) return give_up(thread, *fault);
+  if (pauses_here()) return stop_item(thread, AfterRest::kPause);
+  if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
+  moves_without_time_ = 0;
+  resume_ms_ = next_calculation_ms(machine_.now_ms);
+  return Flow::kSuspend;
+}
+
+std::optional<Fault> CoordSystem::add_blendable(motion::MotionCommand& command) {
   const auto cs = static_cast<unsigned>(number_);
   if (const std::string refusal = on_path_ ? std::string() : why_not_ready(false); !refusal.empty())
-    return give_up(thread, {FaultKind::kNotReady, thread.source(), refusal});
+    return Fault{FaultKind::kNotReady, command.source, refusal};
   ensure_sequence(machine_.now_ms);
   command.id = next_id_;
   command.no_blend = machine_.elements.get(ElementId::kCoordNoBlend, cs) != 0 || machine_.elements.get(ElementId::kCoordOnceNoBlend, cs) != 0;
@@ -166,13 +183,9 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand& command
   const AxisVector start = std::exchange(program_uu_, command.target_uu);
   const bool spline = command.kind == motion::CommandKind::kPvt && command.mode == MoveMode::kSpline;
   next_id_ += spline ? 3 : command.compensation_side != 0 || compensation_.active() ? 2 : 1;  // what is added has the ids between
-  if (auto fault = spline ? add_to_spline(command, start) : hand_on(command, start)) return give_up(thread, *fault);
+  if (auto fault = spline ? add_to_spline(command, start) : hand_on(command, start)) return fault;
   collect_timings();
-  if (pauses_here()) return stop_item(thread, AfterRest::kPause);
-  if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
-  moves_without_time_ = 0;
-  resume_ms_ = next_calculation_ms(machine_.now_ms);
-  return Flow::kSuspend;
+  return std::nullopt;
 }
 
 /// A move other than a spline: what waits goes before it.

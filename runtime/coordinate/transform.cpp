@@ -237,10 +237,8 @@ std::optional<Fault> transform_command(const Transform& transform, const AxisVec
   return std::nullopt;
 }
 
-bool ProgramFrame::is_plain() const {
-  bool biased = false;   // all are looked at, side by side
-  for (const double bias : position_bias_uu) biased |= bias != 0;
-  return transform < 0 && !biased;
+void ProgramFrame::bias_changed() {
+  is_biased = std::any_of(position_bias_uu.begin(), position_bias_uu.end(), [](double bias) { return bias != 0; });
 }
 
 Transform ProgramFrame::map(const ElementStore& elements) const {
@@ -269,6 +267,7 @@ void ProgramFrame::rename(const ElementStore& elements, const AxisVector& progra
   motion::for_each_axis(axes, [&](std::size_t axis) { change[axis] = program_uu[axis] - values[axis]; });
   const AxisVector shift = map(elements).velocity(change);
   for (std::size_t axis = 0; axis < shift.size(); ++axis) position_bias_uu[axis] += shift[axis];
+  bias_changed();
 }
 
 }  // namespace pmac::runtime

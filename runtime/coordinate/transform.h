@@ -67,10 +67,12 @@ std::optional<Fault> transform_command(const Transform& transform, const AxisVec
 ///   machine = matrix * program + displacement + position bias
 struct ProgramFrame {
   int transform = -1;                 // tsel; -1: none
-  AxisVector position_bias_uu{};      // pset, pclr
+  AxisVector position_bias_uu{};      // pset, pclr; bias_changed() after it
+  bool is_biased = false;             // some of it is not 0
   AxisVector stored_bias_uu{};        // pstore, pload
 
-  bool is_plain() const;
+  bool is_plain() const { return transform < 0 && !is_biased; }
+  void bias_changed();
   Transform map(const ElementStore& elements) const;
   /// nullopt where the matrix is singular.
   std::optional<AxisVector> to_program(const ElementStore& elements, const AxisVector& machine_uu) const;

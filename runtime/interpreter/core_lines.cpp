@@ -114,13 +114,15 @@ InterpreterCore::Next InterpreterCore::put_row(const Instruction& in, double* r)
   const double number = r[in.a];
   if (!(number >= 0 && number < static_cast<double>(run.row_count()))) return fault("this row of moves does not exist");
   const auto row = static_cast<std::size_t>(number);
+  const std::size_t first = run.first_word[row], count = run.first_word[row + 1] - first;
   const bool for_cycle = thread_.cycle_.armed && thread_.code_depth_ == 0;
-  for (std::size_t i = run.first_word[row]; i < run.first_word[row + 1]; ++i) {
+  for (std::size_t i = first; for_cycle && i < first + count; ++i) {
     const std::uint8_t word = run.words[i];
     const auto as_word = Instruction::with_bc(bytecode::Opcode::kAxisWord, 0, static_cast<unsigned>(bytecode::move_word_index(word)), static_cast<unsigned>(bytecode::move_word_kind(word)));
-    const Next next = for_cycle ? collect_cycle_word(as_word, run.values[i]) : after(host_.motion(thread_, as_word, {&run.values[i], 1}));
-    if (next == Next::kLeave) return next;
+    if (collect_cycle_word(as_word, run.values[i]) == Next::kLeave) return Next::kLeave;
   }
+  if (!for_cycle)
+    if (after(host_.move_words(thread_, {run.words.data() + first, count}, {run.values.data() + first, count})) == Next::kLeave) return Next::kLeave;
   r[in.a] = row + 1 == run.row_count() ? 0.0 : number + 1;
   return Next::kContinue;
 }

@@ -67,6 +67,8 @@ class Host {
   virtual double element_address(Thread&, const ElementAddress&) = 0;
   /// SetMode .. Delay. registers: the frame, so that r[a] is registers[a].
   virtual Flow motion(Thread&, const bytecode::Instruction&, std::span<const double> registers) = 0;
+  /// The words of a row of plain moves, as so many AxisWord statements. words: bytecode::move_word_code(), one for each of the values.
+  virtual Flow move_words(Thread&, std::span<const std::uint8_t> words, std::span<const double> values);
   virtual Flow control(Thread&, bytecode::ControlVerb, std::span<const double> arguments) = 0;
   /// A synchronous assignment with its number or element resolved and its right side evaluated.
   virtual Flow queue_assignment(Thread&, const bytecode::SyncTarget& resolved, const ElementAddress& element, double value) = 0;

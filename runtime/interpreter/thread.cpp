@@ -72,6 +72,15 @@ double& Thread::outgoing(int i) {
   return stack_[base_ + running.program->frame_size + static_cast<std::size_t>(i)];
 }
 
+Flow Host::move_words(Thread& thread, std::span<const std::uint8_t> words, std::span<const double> values) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto index = static_cast<unsigned>(bytecode::move_word_index(words[i])), kind = static_cast<unsigned>(bytecode::move_word_kind(words[i]));
+    const Flow flow = motion(thread, bytecode::Instruction::with_bc(bytecode::Opcode::kAxisWord, 0, index, kind), values.subspan(i, 1));
+    if (flow != Flow::kContinue) return flow;
+  }
+  return Flow::kContinue;
+}
+
 Flow Host::card(Thread& thread, bytecode::CardVerb, std::span<const double>) {
   thread.set_host_fault({FaultKind::kNotSimulated, {}, "this is an instruction for an ACR1000 card, and the program runs on no card"});
   return Flow::kFault;

@@ -22,13 +22,15 @@ class ExactFit : public NodeFit {
  public:
   void add(MotorNode& node, std::vector<Segment>& out) override {
     if (is_open_) add_hermite_segment(last_, node, last_.position_mu, last_.after.velocity_mu_ms, node.position_mu, node.before.velocity_mu_ms, out);
-    std::swap(last_, node);
+    last_.time_ms = node.time_ms;
+    last_.position_mu = node.position_mu;
+    last_.after.velocity_mu_ms = node.after.velocity_mu_ms;
     is_open_ = true;
   }
   void finish(std::vector<Segment>&) override { is_open_ = false; }
 
  private:
-  MotorNode last_;
+  MotorNode last_;       // as far as a segment needs it
   bool is_open_ = false;
 };
 

@@ -110,7 +110,7 @@ void JerkLookahead::emit_part(const PlannedCell& part, double speed_from, double
   TimedSegment timed;
   timed.duration_ms = time_ms;
   timed.rate = rate;
-  timed.segment = {owner.command, owner.source, owner.start_ms + d0, d1 - d0, {}};
+  timed.segment = {owner.command, owner.source, owner.start_ms + d0, d1 - d0, 0, {}};
   const auto velocity = [&](const MotorCubic& q, double at_ms, double path_speed) {
     double norm2 = 0;
     for (const MotorCubic& each : owner.motor) norm2 += each.velocity(at_ms) * each.velocity(at_ms);
@@ -135,7 +135,8 @@ void JerkLookahead::note_step(std::size_t before, std::size_t after, double spee
     worst = std::max(worst, change * path_.limits()[m].inv_jmax_ms3_mu / servo_period_ms_);
     worst = std::max(worst, std::abs(b.start.tangent[m] - a.end.tangent[m]) * speed * path_.limits()[m].inv_jmax_ms3_mu / (servo_period_ms_ * servo_period_ms_));
   }
-  if (worst > kJump) timed.jerk_step = worst;
+  const bool is_planned_for = b.start_step_mu2 > 0 && worst <= kMostReservedStep;
+  if (worst > kJump && !is_planned_for) timed.jerk_step = worst;
 }
 
 }  // namespace pmac::motion

@@ -18,6 +18,8 @@ constexpr int kHalvings = 30;         // of a segment into cells
 constexpr double kKink_rad = 0.1, kStraight_rad = 1e-9;
 constexpr double kUneven = 0.02;      // of the square of the program's speed in the middle, against its ends; halved so many times at most
 constexpr int kHalvingsForSpeed = 3;
+constexpr double kSmallStep = 0.15;   // of acceleration, over the jerk limit times a servo period: jerk is reserved for smaller ones, others are joins
+constexpr double kSlightStep = 0.02;  // of the curvature: no join, however much acceleration it means
 constexpr double kRest = 1e-4;        // and rests below this
 constexpr double kShortest_mu = 1e-9; // segments that move less do not move
 
@@ -65,6 +67,14 @@ Bend bend_of(const PathPlace& from, const PathPlace& to) {
   return {std::sqrt(turn2), greatest2 > 0 ? std::sqrt(change2 / greatest2) : 0};
 }
 
+/// Cubics of time from or to rest have a curvature without bound there. The tangent turns as far in the cell, with a curvature that changes evenly.
+void even_out_at_rest(PathPlace& at_rest, const PathPlace& other, double turn_sign, double length_mu) {
+  for (std::size_t m = 0; m < at_rest.tangent.size(); ++m) {
+    const double mean = turn_sign * (other.tangent[m] - at_rest.tangent[m]) / length_mu;
+    at_rest.curvature_mu[m] = other.rests ? mean : 2 * mean - other.curvature_mu[m];
+  }
+}
+
 }  // namespace
 
 JerkPath::JerkPath(std::vector<MotorLimits> limits, double servo_period_ms) : limits_(std::move(limits)), servo_period_ms_(servo_period_ms) {
@@ -91,6 +101,7 @@ PathPlace JerkPath::place(const Segment& segment, double at_ms, double toward_ms
   const bool rests = speed2_at(segment, at_ms) < kInside * kInside * speed2_at(segment, (at_ms + toward_ms) / 2);
   const double seen_ms = rests ? at_ms + kInside * (toward_ms - at_ms) : at_ms, speed = std::sqrt(speed2_at(segment, seen_ms));
   PathPlace result;
+  result.rests = rests;
   result.max_speed2 = speed2_at(segment, at_ms);
   double along = 0, steady2 = 1e300;
   for (const MotorCubic& q : segment.motor) along += q.velocity(seen_ms) / speed * q.acceleration(seen_ms);
@@ -117,6 +128,8 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   cell.segment = first_segment_ + segments_.size() - 1;
   cell.start = place(segment, from_ms, to_ms, share);
   cell.end = place(segment, to_ms, from_ms, share);
+  if (cell.start.rests) even_out_at_rest(cell.start, cell.end, 1, cell.length_mu);
+  if (cell.end.rests) even_out_at_rest(cell.end, cell.start, -1, cell.length_mu);
   cell.start.max_speed2 = std::min(cell.start.max_speed2, start_speed2);
   judge(cell);
   const bool follows = !cells_.empty() && !cells_.back().stops;
@@ -124,7 +137,23 @@ void JerkPath::add_cell(const Segment& segment, double from_ms, double to_ms, do
   const double slow2 = std::max(unfelt_mu_ms_ * unfelt_mu_ms_, 1e-30);
   if (kinks || cell.start.max_speed2 <= slow2) stop_here();   // a bend too small for a cell
   cell.stops = cell.end.max_speed2 <= slow2 || bend_of(cell.start, cell.end).turn_rad > kKink_rad;
+  if (follows && !cells_.back().stops) reserve_for_step(cells_.back(), cell);
   cells_.push_back(std::move(cell));
+}
+
+/// The cubics of neighbouring segments of one arc have slightly different curvatures where they meet. What that takes of the jerk at servo rate
+/// is left free there.
+void JerkPath::reserve_for_step(PathCell& before, PathCell& cell) const {
+  const double speed2 = std::min(before.end.steady_speed2, cell.start.steady_speed2);
+  double step_mu2 = 0, change = 0, greatest = 0;
+  for (std::size_t m = 0; m < std::min(limits_.size(), cell.start.curvature_mu.size()); ++m) {
+    const double from = before.end.curvature_mu[m], to = cell.start.curvature_mu[m];
+    step_mu2 = std::max(step_mu2, std::abs(to - from) * limits_[m].inv_jmax_ms3_mu / servo_period_ms_);
+    change = std::max(change, std::abs(to - from));
+    greatest = std::max({greatest, std::abs(from), std::abs(to)});
+  }
+  if (step_mu2 * speed2 > kSmallStep && change > kSlightStep * greatest) return;
+  cell.start_step_mu2 = before.end_step_mu2 = step_mu2;
 }
 
 /// What the motors' limits come to along the cell.

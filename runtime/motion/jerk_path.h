@@ -20,6 +20,7 @@ struct PathPlace {
   std::vector<double> curvature_mu;   // [motor] 1/mu
   double max_speed2 = 0;              // mu^2/ms^2: the program's and the motors' limits of speed
   double steady_speed2 = 0;           // about the highest that the other limits leave as well
+  bool rests = false;                 // of the program: the derivatives are those a little away
 };
 
 struct PathCell {
@@ -29,9 +30,16 @@ struct PathCell {
   PathPlace start, end;
   bool is_straight = false;
   double inv_accel_ms2_mu = 0, inv_jerk_ms3_mu = 0;   // of the tightest motor along the tangents; 0: off
+  /// Small steps of acceleration there that jerk is reserved for: over the jerk limit times a servo period, and over the square of the speed.
+  double start_step_mu2 = 0, end_step_mu2 = 0;   // ms^2/mu^2
   double accel_share = 1;             // part of the acceleration limits that may be used: steps in direction take the rest
   bool stops = false;                 // motion comes to rest at its end
 };
+
+/// The largest small step, over the jerk limit times a servo period.
+inline constexpr double kMostReservedStep = 0.6;
+/// Part of the jerk limit that a small step of acceleration leaves: in one third difference of samples much of it is felt.
+inline double jerk_share_beside(double step) { return 1 - 0.75 * (step < kMostReservedStep ? step : kMostReservedStep); }
 
 class JerkPath {
  public:
@@ -58,6 +66,7 @@ class JerkPath {
  private:
   PathPlace place(const Segment& segment, double at_ms, double toward_ms, double share) const;
   void judge(PathCell& cell) const;
+  void reserve_for_step(PathCell& before, PathCell& cell) const;
   bool bends_unevenly(const PathPlace& from, const PathPlace& middle, const PathPlace& to, double length_mu) const;
   void add_cells(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2, int halvings);
   void add_cell(const Segment& segment, double from_ms, double to_ms, double share, double start_speed2);

@@ -19,6 +19,7 @@ constexpr double kRoughGap = 0.02, kGap = 1e-3;   // of the time, from the faste
 constexpr double kStops = 3;              // so many times as long as a stop takes is what lies ahead felt
 constexpr double kRestSteps = 2;          // the cell from or to rest takes so many steps
 constexpr double kFirstGuess = 0.6;       // of the estimated square of the speed
+constexpr double kNear = 2.5;             // servo periods: third differences of samples reach no further
 constexpr double kStep = 1e-6;            // of a limit: smaller steps of acceleration between cells are none
 
 double between(double a, double b, double part) { return a + (b - a) * part; }
@@ -264,7 +265,7 @@ void JerkPlan::make_problem() {
     const PlannedCell& planned = new_cells_[i];
     const PathCell& cell = path_.cell(planned.cell);
     const bool whole = planned.to_mu == cell.length_mu;
-    add_rows(planned);
+    add_rows(i);
     double max_speed2 = max_speed2_at(cell, planned.to_mu);
     if (whole && i + 1 < new_cells_.size()) max_speed2 = std::min(max_speed2, path_.cell(planned.cell + 1).start.max_speed2);
     problem_.max_speed2.push_back(max_speed2);
@@ -274,18 +275,31 @@ void JerkPlan::make_problem() {
   problem_.guess_speed2.back() = 0;
 }
 
+/// Of the jerk limits, that cells near small steps of acceleration may use.
+double JerkPlan::jerk_share(std::size_t i) const {
+  const PlannedCell& planned = new_cells_[i];
+  const PathCell& cell = path_.cell(planned.cell);
+  const double near_mu = kNear * 2 * shortest_step_ms_ * std::sqrt(std::max(cell.start.steady_speed2, cell.end.steady_speed2));
+  double step_mu2 = planned.from_mu < near_mu ? cell.start_step_mu2 : 0;
+  if (planned.to_mu > cell.length_mu - near_mu) step_mu2 = std::max(step_mu2, cell.end_step_mu2);
+  const double steady2 = std::max(cell.start.steady_speed2, cell.end.steady_speed2), guess2 = std::max(i > 0 ? guess_speed2_[i - 1] : state_.speed2, guess_speed2_[i]);
+  return jerk_share_beside(step_mu2 * std::min(steady2, guess2 / kFirstGuess));
+}
+
 /// What the motors make of a cell; along a straight line the tightest counts for all.
-void JerkPlan::add_rows(const PlannedCell& planned) {
+void JerkPlan::add_rows(std::size_t i) {
+  const PlannedCell& planned = new_cells_[i];
   const PathCell& cell = path_.cell(planned.cell);
   const std::size_t before = problem_.rows.size() - (problem_.first_row.size() > 1 ? problem_.first_row[problem_.first_row.size() - 2] : 0);
   const ProfileRow* last = problem_.rows.empty() ? nullptr : problem_.rows.data() + problem_.first_row[problem_.first_row.size() - 2];
   const double from = planned.from_mu / cell.length_mu, to = planned.to_mu / cell.length_mu;
+  const double share = jerk_share(i);
   std::vector<ProfileRow> rows;
-  if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / kJerk, 1, 0, 1, 1, 0, 0, true});
+  if (cell.is_straight) rows.push_back({cell.inv_accel_ms2_mu / kAccel, cell.inv_jerk_ms3_mu / (kJerk * share), 1, 0, 1, 1, 0, 0, true});
   for (std::size_t m = 0; !cell.is_straight && m < std::min(path_.limits().size(), cell.start.tangent.size()); ++m) {
     const MotorLimits& limit = path_.limits()[m];
     if (limit.inv_amax_ms2_mu <= 0 && limit.inv_jmax_ms3_mu <= 0) continue;
-    rows.push_back({limit.inv_amax_ms2_mu / (kAccel * cell.accel_share), limit.inv_jmax_ms3_mu / kJerk, tangent_at(cell, m, from), curvature_at(cell, m, from),
+    rows.push_back({limit.inv_amax_ms2_mu / (kAccel * cell.accel_share), limit.inv_jmax_ms3_mu / (kJerk * share), tangent_at(cell, m, from), curvature_at(cell, m, from),
                     tangent_at(cell, m, (from + to) / 2), tangent_at(cell, m, to), curvature_at(cell, m, to),
                     (cell.end.curvature_mu[m] - cell.start.curvature_mu[m]) / cell.length_mu, false});
   }

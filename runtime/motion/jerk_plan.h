@@ -61,7 +61,8 @@ class JerkPlan {
   bool refine();
   bool is_coarse(std::size_t i, double finest_ms) const;
   void make_problem();
-  void add_rows(const PlannedCell& planned);
+  double jerk_share(std::size_t i) const;
+  void add_rows(std::size_t i);
   bool accept(bool solved);
   void slow_down();
 

@@ -139,9 +139,14 @@ Join decide_join(const Move& previous, const Move& next, double entry_total_ms, 
   if (corner_is_too_sharp(corner, next, config.corner_dwell_bp)) {
     Join stop;
     stop.dwell_ms = config.added_dwell_ms;
+    stop.by_rule = true;
     return stop;
   }
-  if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) return {};
+  if (previous.no_blend || corner_is_too_sharp(corner, next, config.corner_blend_bp)) {
+    Join stop;
+    stop.by_rule = true;
+    return stop;
+  }
   const JoinKind kind = kind_of(corner, axes);
   Ramp ramp = ramp_within_limits(next.entry, speed_change(corner, axes), motor_change(previous, next), false, config);
   if (kind == JoinKind::kCorner) {

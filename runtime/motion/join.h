@@ -18,6 +18,7 @@ struct Join {
   Ramp ramp;                    // of a blend
   double speed_before = 0, speed_after = 0;  // at the join, over all axes, uu/ms
   double dwell_ms = 0;          // of a stop: how long it waits
+  bool by_rule = false;         // a stop that a corner rule or NoBlend asks for: motors are to be in position (Coord[].InPosTimeOut)
 };
 
 /// entry_total_ms: length of the ramp or blend into `previous`.

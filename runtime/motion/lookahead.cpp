@@ -26,7 +26,7 @@ bool stands_still(const Segment& segment) {
 }  // namespace
 
 Lookahead::Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms, double shortest_part_ms)
-    : limits_(limits), window_ms_(window_ms), chunk_ms_(window_ms / 4), shortest_part_ms_(shortest_part_ms), steps_(std::move(limits), servo_period_ms) {}
+    : limits_(limits), window_ms_(window_ms), chunk_ms_(window_ms / 4), steps_(limits, servo_period_ms), division_(std::move(limits), shortest_part_ms) {}
 
 void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
   steps_.add(std::move(segment), prepared_);
@@ -36,8 +36,10 @@ void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
       continue;
     }
     append(std::move(prepared));
-    if (known_ms_ < window_ms_ + chunk_ms_) continue;
-    plan(0);
+    const bool is_first = planned_ == 0;   // of a path: nothing can be settled yet
+    if (known_ms_ < (is_first ? window_ms_ : window_ms_ + chunk_ms_)) continue;
+    plan(0, false);
+    if (is_first) continue;
     while (known() > 1 && known_ms_ - intervals_.front().stretch.duration_ms >= window_ms_) commit_first(0, out);
   }
   prepared_.clear();
@@ -64,12 +66,12 @@ void Lookahead::end_path(std::vector<TimedSegment>& out) {
   if (!intervals_.empty()) {
     const bool stops = is_moving(wholes_.back().segment, true);
     if (stops && intervals_.back().start_bound == 0) split_last();
-    const double end_beta = stops ? 0 : intervals_.back().limits.max_rate2;
-    plan(end_beta);
+    const double end_beta = stops ? 0 : intervals_.back().limits.max_end_rate2;
+    plan(end_beta, true);
     while (known() > 0) commit_first(end_beta, out);
   }
   known_ms_ = 0;
-  planned_ = 0;
+  planned_ = settled_ = 0;
   at_start_ = true;
 }
 
@@ -85,36 +87,41 @@ void Lookahead::append(PreparedSegment prepared) {
   const Start start{prepared.speed_ratio, prepared.max_start_rate, prepared.stops_at_start}, inside{1, std::numeric_limits<double>::infinity(), false};
   find_rate_limits(segment, all, limits_, whole.accel_share, first_limits_);
   const bool may_matter = !first_limits_.is_even && may_be_limited(segment, limits_, whole.accel_share);
-  const bool too_fast = may_matter && (first_limits_.max_rate2 < 1 || !first_limits_.allows(1, 1));
-  if (!too_fast) return append_interval(all, &first_limits_, start, may_matter);
-  find_parts(segment, all, first_limits_, {limits_, whole.accel_share, shortest_part_ms_}, part_ends_ms_);
-  if (part_ends_ms_.size() == 1) return append_interval(all, &first_limits_, start, false);
-  double from_ms = 0;
-  for (const double to_ms : part_ends_ms_) {
-    append_interval({from_ms, to_ms - from_ms}, nullptr, from_ms == 0 ? start : inside, false);
-    from_ms = to_ms;
+  const bool too_fast = may_matter && !first_limits_.allows(1, 1);
+  if (!too_fast) {
+    Interval& next = append_interval(all, start);
+    next.limits = first_limits_;
+    next.may_be_divided = may_matter;
+    return bound_start(next, start);
+  }
+  division_.start(segment, all, first_limits_, whole.accel_share);
+  for (Stretch part; division_.next(part);) {
+    const Start& at = part.from_ms == 0 ? start : inside;
+    Interval& next = append_interval(part, at);
+    division_.find_limits(next.limits);
+    bound_start(next, at);
   }
 }
 
-/// Of the newest segment. limits: where they are known.
-void Lookahead::append_interval(const Stretch& stretch, const RateLimits* limits, const Start& start, bool may_be_divided) {
+/// Of the newest segment; its limits are still to be found.
+Lookahead::Interval& Lookahead::append_interval(const Stretch& stretch, const Start& start) {
   runtime::poll_interruption();
-  const Interval* const before = intervals_.empty() ? nullptr : &intervals_.back();
-  const double max_before = before ? before->limits.max_rate2 : 0, ratio2 = start.speed_ratio * start.speed_ratio;
-  if (before && before->start_bound == 0 && start.stops) split_last();
-  const bool follows = before != nullptr;
+  if (start.stops && !intervals_.empty() && intervals_.back().start_bound == 0) split_last();
   Interval& next = intervals_.extend();
   next.whole = first_whole_ + wholes_.size() - 1;
   next.stretch = stretch;
-  next.speed_ratio2 = ratio2;
+  next.speed_ratio2 = start.speed_ratio * start.speed_ratio;
   next.beta = 0;
-  next.may_be_divided = may_be_divided;
-  if (limits) next.limits = *limits;
-  else find_limits(next);
-  next.start_bound = start.stops ? 0 : std::min(next.limits.max_rate2, start.max_rate * start.max_rate);
-  if (follows) next.start_bound = std::min(next.start_bound, max_before / ratio2);
+  next.may_be_divided = false;
   ++wholes_.back().parts;
   known_ms_ += stretch.duration_ms;
+  return next;
+}
+
+/// The newest interval's limits are known.
+void Lookahead::bound_start(Interval& interval, const Start& start) {
+  interval.start_bound = start.stops ? 0 : std::min(interval.limits.max_start_rate2, start.max_rate * start.max_rate);
+  if (known() > 1) interval.start_bound = std::min(interval.start_bound, intervals_[intervals_.size() - 2].limits.max_end_rate2 / interval.speed_ratio2);
 }
 
 void Lookahead::find_limits(Interval& interval) const {
@@ -122,74 +129,89 @@ void Lookahead::find_limits(Interval& interval) const {
   find_rate_limits(whole.segment, interval.stretch, limits_, whole.accel_share, interval.limits);
 }
 
-void Lookahead::find_parts_of(const Interval& interval) {
+/// Into how many parts interval i is to be divided, with x from x0 to x1; 0: as its path asks for, as it has not been before.
+int Lookahead::parts_of(const Interval& interval, double x0, double x1) const {
+  if (interval.limits.is_even || std::min(x0, x1) >= kFullRate2) return 1;
+  if (interval.may_be_divided) return 0;
   const Whole& whole = whole_of(interval);
-  find_parts(whole.segment, interval.stretch, interval.limits, {limits_, whole.accel_share, shortest_part_ms_}, part_ends_ms_);
+  return division_.parts_for(whole.segment, interval.stretch, x0, x1, whole.accel_share);
 }
 
-/// Appends the interval in parts, each with its limits; what holds at its start holds at the start of the first.
-void Lookahead::divide_interval(const Interval& interval, std::vector<Interval>& parts) {
-  find_parts_of(interval);
-  whole_of(interval).parts += static_cast<int>(part_ends_ms_.size()) - 1;
-  double from_ms = interval.stretch.from_ms;
-  for (const double to_ms : part_ends_ms_) {
-    const bool is_first = from_ms == interval.stretch.from_ms;
+/// Appends the interval in parts, each with its limits; what holds at its start holds at the start of the first. count: see parts_of().
+void Lookahead::divide_interval(const Interval& interval, int count, std::vector<Interval>& parts) {
+  Whole& whole = whole_of(interval);
+  if (count == 0) division_.start(whole.segment, interval.stretch, interval.limits, whole.accel_share);
+  else division_.start_equal(whole.segment, interval.stretch, count, whole.accel_share);
+  --whole.parts;
+  double before_rate2 = 1;
+  for (Stretch stretch; division_.next(stretch); ++whole.parts) {
+    const bool is_first = stretch.from_ms == interval.stretch.from_ms;
     Interval& part = parts.emplace_back();
     part.whole = interval.whole;
-    part.stretch = {from_ms, to_ms - from_ms};
+    part.stretch = stretch;
     part.speed_ratio2 = is_first ? interval.speed_ratio2 : 1;
-    find_limits(part);
-    part.start_bound = is_first ? interval.start_bound : part.limits.max_rate2;
-    from_ms = to_ms;
+    division_.find_limits(part.limits);
+    part.start_bound = is_first ? interval.start_bound : std::min(before_rate2, part.limits.max_start_rate2);
+    before_rate2 = part.limits.max_end_rate2;
   }
 }
 
-/// Motion is not at full rate at both ends of interval i, as far as stops ahead tell.
-bool Lookahead::is_slowed(int i, double end_beta) const {
-  const auto at = static_cast<std::size_t>(i);
-  const double end = i + 1 < known() ? intervals_[at + 1].beta * intervals_[at + 1].speed_ratio2 : end_beta;
-  return intervals_[at].beta < kFullRate2 || end < kFullRate2;
+/// x at the end of interval i, as far as stops ahead tell.
+double Lookahead::end_beta_of(int i, double end_beta) const {
+  const auto next = static_cast<std::size_t>(i) + 1;
+  return i + 1 < known() ? intervals_[next].beta * intervals_[next].speed_ratio2 : end_beta;
 }
 
-/// beta of all intervals, of which the slowed ones are divided.
-void Lookahead::plan(double end_beta) {
-  int first = planned_;
-  backward(end_beta);
-  const auto needs_parts = [&](int i) { return intervals_[static_cast<std::size_t>(i)].may_be_divided && is_slowed(i, end_beta); };
-  while (first < known() && !needs_parts(first)) ++first;
-  if (first == known()) return;
+/// beta of all intervals. Those that the newest segments do not touch any more are divided where x changes much over them or is held back: by
+/// beta as it is before any of them is divided, so that it makes no difference how the path came in.
+void Lookahead::plan(double end_beta, bool ends) {
+  const int changed = backward(end_beta), settled = ends ? known() : changed - 1;   // the end of the one before has changed, too
+  if (settled > settled_ && divide_to(settled, end_beta)) backward(end_beta);
+}
+
+/// Divides what is settled up to here. False if there was nothing to be divided.
+bool Lookahead::divide_to(int settled, double end_beta) {
+  const auto parts_needed = [&](int i) { return parts_of(intervals_[static_cast<std::size_t>(i)], intervals_[static_cast<std::size_t>(i)].beta, end_beta_of(i, end_beta)); };
+  int first = std::exchange(settled_, settled);
+  while (first < settled && parts_needed(first) == 1) ++first;
+  if (first == settled) return false;
   taken_out_.clear();
   for (int i = first; i < known(); ++i) {
     Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    if (needs_parts(i)) divide_interval(interval, taken_out_);
+    const int count = i < settled ? parts_needed(i) : 1;
+    if (count != 1) divide_interval(interval, count, taken_out_);
     else taken_out_.push_back(std::move(interval));
+    if (i + 1 == settled) settled_ = first + static_cast<int>(taken_out_.size());
   }
   intervals_.shrink(static_cast<std::size_t>(first));
   for (Interval& interval : taken_out_) intervals_.extend() = std::move(interval);
   planned_ = first;
-  backward(end_beta);
+  return true;
 }
 
 /// Motion comes to it slowly: it speeds up on parts.
-void Lookahead::divide_first(double end_beta) {
+void Lookahead::divide_first(int count, double end_beta) {
   taken_out_.clear();
-  divide_interval(intervals_.front(), taken_out_);
+  divide_interval(intervals_.front(), count, taken_out_);
   intervals_.pop_front();
   double beta = intervals_.empty() ? end_beta : intervals_.front().beta * intervals_.front().speed_ratio2;
   while (!taken_out_.empty()) {
     Interval& part = taken_out_.back();
-    part.beta = part.limits.largest_start(part.start_bound, std::min(beta, part.limits.max_rate2));
+    part.beta = part.limits.largest_start(part.start_bound, std::min(beta, part.limits.max_end_rate2));
     beta = part.beta * part.speed_ratio2;
     intervals_.push_front(std::move(part));
     taken_out_.pop_back();
     ++planned_;
+    ++settled_;
   }
   --planned_;
+  --settled_;
 }
 
 /// Motion has to stop at both ends of the last interval: in two halves it can move in between.
 void Lookahead::split_last() {
   planned_ = std::min(planned_, known() - 1);
+  settled_ = std::min(settled_, known() - 1);
   Interval second = intervals_.back();
   Interval& first = intervals_.back();
   first.stretch.duration_ms = second.stretch.duration_ms /= 2;
@@ -198,38 +220,47 @@ void Lookahead::split_last() {
   find_limits(second);
   first.start_bound = 0;
   second.speed_ratio2 = 1;
-  second.start_bound = second.limits.max_rate2;
+  second.start_bound = second.limits.max_start_rate2;
   ++whole_of(second).parts;
   intervals_.extend() = std::move(second);
 }
 
-/// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are.
-void Lookahead::backward(double end_beta) {
+/// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are. Returns the first other.
+int Lookahead::backward(double end_beta) {
   double beta = end_beta;  // of x at the end of interval i
-  for (int i = known() - 1; i >= 0; --i) {
+  int i = known() - 1;
+  for (; i >= 0; --i) {
     Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    const double start = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_rate2));
+    const double start = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2));
     if (i < planned_ && start == interval.beta) break;
     interval.beta = start;
     beta = start * interval.speed_ratio2;
   }
   planned_ = known();
+  return i + 1;
 }
 
 void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   runtime::poll_interruption();
-  if (intervals_.front().may_be_divided && (is_slowed(0, end_beta) || (!at_start_ && rate2_ < kFullRate2))) divide_first(end_beta);
-  const Interval& interval = intervals_.front();
-  if (at_start_) rate2_ = interval.beta;
+  if (at_start_) rate2_ = intervals_.front().beta;
   at_start_ = false;
+  const auto next_rate2 = [&] {
+    const RateLimits& limits = intervals_.front().limits;
+    return limits.largest_end(rate2_, std::min(end_beta_of(0, end_beta), limits.max_end_rate2));
+  };
+  double next = next_rate2();
+  if (const int parts = parts_of(intervals_.front(), rate2_, next); parts != 1) {
+    divide_first(parts, end_beta);
+    next = next_rate2();
+  }
+  const Interval& interval = intervals_.front();
   const double ratio2 = known() > 1 ? intervals_[1].speed_ratio2 : 1;
-  const double next_beta = known() > 1 ? intervals_[1].beta * ratio2 : end_beta;
-  const double next = interval.limits.largest_end(rate2_, std::min(next_beta, interval.limits.max_rate2));
-  const bool meets_beta = next == next_beta && (rate2_ < interval.beta || interval.beta == interval.start_bound);
+  const bool meets_beta = next == end_beta_of(0, end_beta) && (rate2_ < interval.beta || interval.beta == interval.start_bound);
   emit(interval, rate2_, next, meets_beta, out);
   rate2_ = next / ratio2;
   known_ms_ -= interval.stretch.duration_ms;
   --planned_;
+  settled_ = std::max(0, settled_ - 1);
   if (--whole_of(interval).parts == 0) {
     wholes_.pop_front();
     ++first_whole_;
@@ -240,7 +271,7 @@ void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
 /// may_switch: x may rise above both ends on the way.
 void Lookahead::emit(const Interval& interval, double x0, double x1, bool may_switch, std::vector<TimedSegment>& out) {
   if (interval.limits.is_even) return emit_even(interval, x0, x1, out);
-  const bool worthwhile = may_switch && interval.limits.largest_end(x0, interval.limits.max_rate2) > kWorthwhileRise * x1;
+  const bool worthwhile = may_switch && interval.limits.largest_end(x0, interval.limits.max_end_rate2) > kWorthwhileRise * x1;
   if (!worthwhile || !emit_with_switch(interval, x0, x1, out)) emit_part(interval, interval.stretch, x0, x1, out);
 }
 
@@ -261,7 +292,7 @@ void Lookahead::emit_part(const Interval& interval, const Stretch& stretch, doub
 void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const {
   const Stretch& all = interval.stretch;
   const double width = interval.limits.bands.empty() ? std::numeric_limits<double>::infinity() : interval.limits.bands[0].width;
-  const double meeting = (x0 + x1 + width) / 2, peak = std::min(interval.limits.max_rate2, meeting), ms_per_x = all.duration_ms / width;
+  const double meeting = (x0 + x1 + width) / 2, peak = std::min(interval.limits.max_rate2(), meeting), ms_per_x = all.duration_ms / width;
   double rise_ms = (peak - x0) * ms_per_x, fall_ms = (peak - x1) * ms_per_x, flat_ms = 0;
   const bool stays = meeting > peak;   // at its highest value for some time
   if (stays) {
@@ -287,9 +318,10 @@ void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::v
 bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) {
   constexpr int kSteps = 20;
   const Whole& whole = whole_of(interval);
-  const double from_ms = interval.stretch.from_ms, whole_ms = interval.stretch.duration_ms, highest = interval.limits.max_rate2;
-  double low_ms = 0, low_over = x0 - interval.limits.largest_start(highest, x1);         // what can be reached over what may be: below 0 at the start,
-  double high_ms = whole_ms, high_over = interval.limits.largest_end(x0, highest) - x1;  // above 0 at the end
+  const double from_ms = interval.stretch.from_ms, whole_ms = interval.stretch.duration_ms;
+  const RateLimits& limits = interval.limits;
+  double low_ms = 0, low_over = x0 - limits.largest_start(limits.max_start_rate2, x1);         // what can be reached over what may be: below 0 at the start,
+  double high_ms = whole_ms, high_over = limits.largest_end(x0, limits.max_end_rate2) - x1;  // above 0 at the end
   if (low_over >= 0 || high_over <= 0) return false;
   double at_ms = 0, peak = 0;
   bool was_low = false;
@@ -297,7 +329,7 @@ bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1,
     at_ms = std::clamp(low_ms - low_over * (high_ms - low_ms) / (high_over - low_over), 0.001 * whole_ms, 0.999 * whole_ms);
     find_rate_limits(whole.segment, {from_ms, at_ms}, limits_, whole.accel_share, first_limits_);
     find_rate_limits(whole.segment, {from_ms + at_ms, whole_ms - at_ms}, limits_, whole.accel_share, second_limits_);
-    const double reached = first_limits_.largest_end(x0, highest), allowed = second_limits_.largest_start(highest, x1), over = reached - allowed;
+    const double reached = first_limits_.largest_end(x0, first_limits_.max_end_rate2), allowed = second_limits_.largest_start(second_limits_.max_start_rate2, x1), over = reached - allowed;
     peak = std::min(reached, allowed);
     if (std::abs(over) <= kSamePeak * peak) break;
     if (i > 0 && (over < 0) == was_low) (was_low ? high_over : low_over) /= 2;

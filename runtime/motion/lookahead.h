@@ -60,17 +60,19 @@ class Lookahead : public TimeLaw {
   Whole& whole_of(const Interval& interval) { return wholes_[interval.whole - first_whole_]; }
   const Whole& whole_of(const Interval& interval) const { return wholes_[interval.whole - first_whole_]; }
   void append(PreparedSegment prepared);
-  void append_interval(const Stretch& stretch, const RateLimits* limits, const Start& start, bool may_be_divided);
+  Interval& append_interval(const Stretch& stretch, const Start& start);
+  void bound_start(Interval& interval, const Start& start);
   void find_limits(Interval& interval) const;
-  void find_parts_of(const Interval& interval);
-  void divide_interval(const Interval& whole, std::vector<Interval>& parts);
-  bool is_slowed(int i, double end_beta) const;
-  void plan(double end_beta);
-  void divide_first(double end_beta);
+  int parts_of(const Interval& interval, double x0, double x1) const;
+  void divide_interval(const Interval& interval, int count, std::vector<Interval>& parts);
+  double end_beta_of(int i, double end_beta) const;
+  void plan(double end_beta, bool ends);
+  bool divide_to(int settled, double end_beta);
+  void divide_first(int count, double end_beta);
   void rest(Segment segment, std::vector<TimedSegment>& out);
   void end_path(std::vector<TimedSegment>& out);
   void split_last();
-  void backward(double end_beta);
+  int backward(double end_beta);
   void commit_first(double end_beta, std::vector<TimedSegment>& out);
   void emit(const Interval& interval, double x0, double x1, bool may_switch, std::vector<TimedSegment>& out);
   void emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
@@ -78,10 +80,10 @@ class Lookahead : public TimeLaw {
   void emit_part(const Interval& interval, const Stretch& stretch, double x0, double x1, std::vector<TimedSegment>& out) const;
 
   std::vector<MotorLimits> limits_;
-  double window_ms_, chunk_ms_, shortest_part_ms_;
+  double window_ms_, chunk_ms_;
   VelocitySteps steps_;
   std::vector<PreparedSegment> prepared_;
-  std::vector<double> part_ends_ms_;
+  Division division_;
   Ring<Whole> wholes_;
   std::uint64_t first_whole_ = 0;
   Ring<Interval> intervals_;
@@ -89,6 +91,7 @@ class Lookahead : public TimeLaw {
   std::vector<Interval> taken_out_;
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass
+  int settled_ = 0;             // intervals that are divided as far as planning asks for it
   double rate2_ = 0;            // x at the start of the first interval
   bool at_start_ = true;
 };

@@ -51,4 +51,17 @@ std::optional<runtime::Fault> MotorKinematics::rate_at(const AxisVector& axis_uu
   return inverse_rates_(axis_uu, {axis_rate_uu_ms, motor_rate_mu_ms}, position_mu.data(), source);
 }
 
+bool MotorKinematics::rate_by_differences(const AxisVector& axis_uu, const AxisVector& axis_rate_uu_ms, double step_ms, double* motor_rate_mu_ms,
+                                          SourceLine source) const {
+  AxisVector place_uu = axis_uu;
+  const auto positions = [&](double offset_ms, double* motor_mu) {
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) place_uu[axis] = axis_uu[axis] + offset_ms * axis_rate_uu_ms[axis];
+    return !position(place_uu, motor_mu, source).has_value();
+  };
+  std::vector<double> before_mu(count_);
+  if (!positions(-step_ms, before_mu.data()) || !positions(step_ms, motor_rate_mu_ms)) return false;
+  for (std::size_t motor = 0; motor < count_; ++motor) motor_rate_mu_ms[motor] = (motor_rate_mu_ms[motor] - before_mu[motor]) / (2 * step_ms);
+  return true;
+}
+
 }  // namespace pmac::motion

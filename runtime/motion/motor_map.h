@@ -27,6 +27,10 @@ class MotorKinematics {
   /// Motor velocities of axis velocities at a position, through the routine where there is one. motor_rate_mu_ms: [count()]
   std::optional<runtime::Fault> rate_at(const AxisVector& axis_uu, const AxisVector& axis_rate_uu_ms, double* motor_rate_mu_ms, SourceLine source) const;
 
+  /// Routines only: motor velocities along an axis velocity, as the central difference of the routine's positions step_ms before and behind.
+  /// False where it has no solution there.
+  bool rate_by_differences(const AxisVector& axis_uu, const AxisVector& axis_rate_uu_ms, double step_ms, double* motor_rate_mu_ms, SourceLine source) const;
+
  private:
   struct Term { std::size_t motor, axis; double coefficient; };
   std::size_t count_ = 0;

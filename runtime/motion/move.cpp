@@ -120,6 +120,7 @@ std::vector<double> motor_velocity(const Move& move, double time_ms) {
 double vector_speed(const Move& move, double time_ms) { return move.length_uu == 0 ? 0 : move.length_uu / time_ms; }
 
 Ramp own_ramp(const Move& move, double time_ms, bool stops, const PipelineConfig& config) {
+  if (move.curve->motor_delta_mu.empty()) return make_ramp(stops ? move.exit : move.entry, vector_speed(move, time_ms), config.ramp_rule);
   return ramp_within_limits(stops ? move.exit : move.entry, vector_speed(move, time_ms), motor_velocity(move, time_ms), stops, config);
 }
 

@@ -15,7 +15,7 @@ namespace pmac::motion {
 struct NodeSide {
   std::uint64_t stretch = 0;
   double z = 0, z_rate = 0;             // 1/ms
-  Row<double> velocity_mu_ms;           // linear maps only
+  Row<double> velocity_mu_ms;           // where it is known: linear maps everywhere, routines in places
 };
 
 struct MotorNode {

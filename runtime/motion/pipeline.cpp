@@ -247,6 +247,13 @@ std::optional<Fault> Pipeline::add(const MotionCommand& command) {
   return s.run_stages(false);
 }
 
+std::optional<double> Pipeline::stop_by_rule_ms(const MotionCommand& next) const {
+  State& s = *state_;
+  if (s.fault) return std::nullopt;
+  if (make_move(next, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics}, s.next)) return std::nullopt;
+  return s.planner.stop_by_rule_ms(s.next, s.config);
+}
+
 std::optional<Fault> Pipeline::end_sequence() {
   State& s = *state_;
   if (s.fault) return s.fault;

@@ -45,6 +45,9 @@ class Pipeline {
   /// ends at horizon_ms() with the velocity that sample() gives there.
   [[nodiscard]] std::optional<runtime::Fault> add(const MotionCommand& command);
 
+  /// Where a corner rule or NoBlend asks for a stop between the last command added and this one: the dwell that a corner rule adds there.
+  std::optional<double> stop_by_rule_ms(const MotionCommand& next) const;
+
   /// The last command added comes to rest with its td and tsd; what follows is a new sequence. Harmless when at rest.
   [[nodiscard]] std::optional<runtime::Fault> end_sequence();
 

@@ -97,6 +97,12 @@ void Planner::end_sequence(PlannerOutput& out) {
   if (has_pending_) stop(out);
 }
 
+std::optional<double> Planner::stop_by_rule_ms(const Move& next, const PipelineConfig& config) const {
+  if (!has_pending_ || next.time_ms == 0) return std::nullopt;
+  const Join join = decide_join(pending_, next, entry_total_ms_, config);
+  return join.by_rule ? std::optional(join.dwell_ms) : std::nullopt;
+}
+
 /// A move without length and time leaves no trace but its timing.
 void Planner::pass_over(const Move& move, PlannerOutput& out) {
   const double time_ms = has_pending_ ? nominal_end_ms() : clock_ms_;

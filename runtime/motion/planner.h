@@ -45,6 +45,9 @@ class Planner {
   /// The move held back comes to rest.
   void end_sequence(PlannerOutput& out);
 
+  /// Where a rule asks for a stop before this move: how long it waits there (see Join::by_rule).
+  std::optional<double> stop_by_rule_ms(const Move& next, const PipelineConfig& config) const;
+
   bool at_rest() const { return !has_pending_; }
   const AxisVector& position() const { return position_; }
   const std::vector<double>& motor_position() const { return motor_position_; }

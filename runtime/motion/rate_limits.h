@@ -47,20 +47,32 @@ class RateBands {
 
 struct RateLimits {
   RateBands bands;                // those that can matter: x is never above 1
-  double max_rate2 = 1;           // of x0 and x1: never ahead of the program, and the speed limits
-  double max_start_rate2 = 1;     // of x0 alone: bands that stand upright
+  double max_start_rate2 = 1;     // of x0: never ahead of the program, the speed limits, and bands that stand upright
+  double max_end_rate2 = 1;       // of x1: the same without the last
   bool is_even = false;           // the motors run straight at constant speed: at most one band, of slope 1, whether it can matter or not
 
   /// Largest x0 for which an x1 in [0, x1_max] exists; x0 <= x0_max.
   double largest_start(double x0_max, double x1_max) const;
   /// Largest x1 <= x1_max that goes with x0.
   double largest_end(double x0, double x1_max) const;
+  /// Highest x at both ends.
+  double max_rate2() const { return max_start_rate2 < max_end_rate2 ? max_start_rate2 : max_end_rate2; }
   /// Both ends are within all limits.
   bool allows(double x0, double x1) const;
 };
 
 /// Part of a segment, in programmed time from its start.
 struct Stretch { double from_ms, duration_ms; };
+
+/// One motor at a place of the path: velocity and acceleration per programmed time.
+struct MotorRates { double velocity, acceleration; };
+
+/// At d ms from the start of the segment. rates: [motor].
+void find_motor_rates(const Segment& segment, double d, std::vector<MotorRates>& rates);
+
+/// The limits of a part that is duration_ms long and not even, from the rates at both of its ends. Replaces what stands in `result`.
+void find_rate_limits(const std::vector<MotorRates>& from, const std::vector<MotorRates>& to, double duration_ms, const std::vector<MotorLimits>& limits,
+                      double accel_share, RateLimits& result);
 
 /// accel_share: part of the acceleration limits that may be used, 0..1. Replaces what stands in `result`.
 void find_rate_limits(const Segment& segment, const Stretch& stretch, const std::vector<MotorLimits>& limits, double accel_share, RateLimits& result);

@@ -2,61 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pmac::motion {
 namespace {
 
 /// Velocities may change by so much over a part, in speeds of the fastest motor.
-constexpr double kChange = 0.03;
-constexpr int kHalvings = 6;
-
-/// Velocities change by no more than kChange over the part.
-bool is_nearly_even(const Segment& segment, double from_ms, double to_ms) {
-  double change = 0, speed = 0;
-  const double middle_ms = (from_ms + to_ms) / 2;
-  for (const MotorCubic& q : segment.motor) {
-    const double begin = q.velocity(from_ms), middle = q.velocity(middle_ms), end = q.velocity(to_ms);
-    const double high = std::max(std::max(begin, end), middle), low = std::min(std::min(begin, end), middle);
-    change = std::max(change, high - low);
-    speed = std::max(speed, std::max(high, -low));
-  }
-  return change <= kChange * speed;
-}
-
-/// Time that the part takes at the highest rate at which no motor's acceleration along the path alone is above its limit.
-bool takes_less_than(double shortest_ms, const Segment& segment, double from_ms, double to_ms, const DivisionRule& rule) {
-  const double middle_ms = (from_ms + to_ms) / 2, least_rate = (to_ms - from_ms) / shortest_ms;
-  if (least_rate > 1) return false;
-  double most = rule.accel_share;   // of a limit, at full rate
-  for (std::size_t m = 0; m < std::min(segment.motor.size(), rule.limits.size()); ++m)
-    most = std::max(most, std::abs(segment.motor[m].acceleration(middle_ms)) * rule.limits[m].inv_amax_ms2_mu);
-  return most * least_rate * least_rate <= rule.accel_share;
-}
-
-/// Ends of the parts that a stretch of the segment is halved into until velocities change little over each, and none is longer than longest_ms.
-class Halving {
- public:
-  Halving(const Segment& segment, double longest_ms, const DivisionRule& rule, std::vector<double>& ends_ms)
-      : segment_(segment), longest_ms_(longest_ms), rule_(rule), ends_ms_(ends_ms) {}
-
-  void divide(double from_ms, double to_ms, int halvings) {
-    if (halvings == 0 || is_done(from_ms, to_ms)) return ends_ms_.push_back(to_ms);
-    const double middle_ms = (from_ms + to_ms) / 2;
-    divide(from_ms, middle_ms, halvings - 1);
-    divide(middle_ms, to_ms, halvings - 1);
-  }
-
- private:
-  bool is_done(double from_ms, double to_ms) const {
-    if (to_ms - from_ms > longest_ms_) return false;
-    return is_nearly_even(segment_, from_ms, to_ms) || takes_less_than(rule_.shortest_ms, segment_, from_ms, to_ms, rule_);
-  }
-
-  const Segment& segment_;
-  double longest_ms_;
-  const DivisionRule& rule_;
-  std::vector<double>& ends_ms_;
-};
+constexpr double kChange = 0.05;
+/// The same where a part takes no longer than the shortest that is asked for.
+constexpr double kChangeOfShort = 0.06;
+/// A part is not shorter than one of so many equal ones.
+constexpr double kMostParts = 64;
 
 }  // namespace
 
@@ -72,11 +28,79 @@ bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limi
   return false;
 }
 
-void find_parts(const Segment& segment, const Stretch& stretch, const RateLimits& found, const DivisionRule& rule, std::vector<double>& ends_ms) {
-  const double slowest_rate = std::sqrt(found.max_rate2);
-  const double longest_ms = stretch.duration_ms * std::max(slowest_rate, 1e-6) * (1 + 1e-9);   // each takes no longer than the stretch at full rate
-  ends_ms.clear();
-  Halving(segment, longest_ms, rule, ends_ms).divide(stretch.from_ms, stretch.from_ms + stretch.duration_ms, kHalvings);
+void Division::start(const Segment& segment, const Stretch& stretch, const RateLimits& found, double accel_share) {
+  segment_ = &segment;
+  accel_share_ = accel_share;
+  at_ms_ = stretch.from_ms;
+  end_ms_ = stretch.from_ms + stretch.duration_ms;
+  least_ms_ = stretch.duration_ms / kMostParts;
+  longest_ms_ = std::max(least_ms_, stretch.duration_ms * std::sqrt(found.max_rate2()));   // each takes no longer than the stretch at full rate
+  equal_ms_ = 0;
+  find_motor_rates(segment, at_ms_, to_);
+}
+
+void Division::start_equal(const Segment& segment, const Stretch& stretch, int parts, double accel_share) {
+  segment_ = &segment;
+  accel_share_ = accel_share;
+  at_ms_ = stretch.from_ms;
+  end_ms_ = stretch.from_ms + stretch.duration_ms;
+  equal_ms_ = least_ms_ = stretch.duration_ms / parts;
+  find_motor_rates(segment, at_ms_, to_);
+}
+
+/// Acceleration of a motor is q'' x + q' x' / 2. With x' the same over the stretch it changes by q''' x h + 3/2 q'' x' h.
+int Division::parts_for(const Segment& segment, const Stretch& stretch, double x0, double x1, double accel_share) const {
+  constexpr double kLoss = 0.06, kMost = 16, kShortestOfShort = 0.05;
+  const double highest = std::max(x0, x1), change = 1.5 * std::abs(x1 - x0), to_ms = stretch.from_ms + stretch.duration_ms;
+  double loss = 0;   // in limits
+  for (std::size_t m = 0; m < std::min(segment.motor.size(), limits_.size()); ++m) {
+    const double a0 = segment.motor[m].acceleration(stretch.from_ms), a1 = segment.motor[m].acceleration(to_ms);
+    loss = std::max(loss, limits_[m].inv_amax_ms2_mu * (std::abs(a1 - a0) * highest + std::max(std::abs(a0), std::abs(a1)) * change));
+  }
+  const double wanted = loss / (kLoss * accel_share);
+  if (wanted <= 1) return 1;
+  const double takes_ms = 2 * stretch.duration_ms / (std::sqrt(x0) + std::sqrt(x1));
+  return static_cast<int>(std::ceil(std::min({wanted, kMost, std::max(1.0, takes_ms / (kShortestOfShort * shortest_ms_))})));
+}
+
+bool Division::next(Stretch& part) {
+  constexpr double kRounding = 1e-6, kTooMuch = 1.5;
+  const double left_ms = end_ms_ - at_ms_;
+  if (left_ms <= 0) return false;
+  std::swap(from_, to_);
+  double parts = std::ceil(left_ms / (equal_ms_ > 0 ? equal_ms_ : wanted_ms()) - kRounding);
+  for (;; parts *= 2) {
+    part_ms_ = left_ms / parts;
+    find_motor_rates(*segment_, parts == 1 ? end_ms_ : at_ms_ + part_ms_, to_);
+    if (part_ms_ <= 2 * least_ms_ || change() <= kTooMuch * kChangeOfShort) break;   // mostly: accelerations may grow
+  }
+  part = {at_ms_, part_ms_};
+  at_ms_ = parts == 1 ? end_ms_ : at_ms_ + part_ms_;
+  return true;
+}
+
+/// How long the part that begins here may be, as far as the rates here tell.
+double Division::wanted_ms() const {
+  double speed = 0, accel = 0, most = accel_share_;   // most: acceleration in limits
+  for (std::size_t m = 0; m < from_.size(); ++m) {
+    const double own = std::abs(from_[m].acceleration);
+    speed = std::max(speed, std::abs(from_[m].velocity));
+    accel = std::max(accel, own);
+    if (m < limits_.size()) most = std::max(most, own * limits_[m].inv_amax_ms2_mu);
+  }
+  if (accel == 0) return longest_ms_;
+  const double to_change = speed / accel, short_ms = shortest_ms_ * std::sqrt(accel_share_ / most);   // at the highest rate that this acceleration alone leaves
+  return std::clamp(std::max(kChange * to_change, std::min(short_ms, kChangeOfShort * to_change)), least_ms_, longest_ms_);
+}
+
+/// How much velocities change over the part, in speeds of the fastest motor.
+double Division::change() const {
+  double change = 0, speed = 0;
+  for (std::size_t m = 0; m < from_.size(); ++m) {
+    change = std::max(change, std::abs(to_[m].velocity - from_[m].velocity));
+    speed = std::max(speed, std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity)));
+  }
+  return speed > 0 ? change / speed : 0;
 }
 
 }  // namespace pmac::motion

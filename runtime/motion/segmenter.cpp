@@ -15,6 +15,9 @@ using runtime::Fault;
 constexpr double kMaxTurn_rad = 0.1;
 /// Nodes are not placed nearer to one another: second differences of positions would be all rounding.
 constexpr double kMinGap_ms = 1e-3;
+/// Differences of a kinematic routine: short beside a segment, and long beside what an iterating routine leaves undecided.
+constexpr double kLongestDifference_ms = 1, kDifferencesPerSegment = 8;
+constexpr double kNodesThatTell = 4;
 
 double turn_rad(const PathPiece& piece, double from_ms, double to_ms) {
   double turn = 0;
@@ -61,7 +64,7 @@ std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>
   place_nodes(piece);
   for (const Place& place : places_)
     if (auto fault = add_node(piece, place, out)) return fault;
-  end_is_open_ = open_.time_ms != piece.start_ms + piece.duration_ms;
+  end_is_open_ = open().time_ms != piece.start_ms + piece.duration_ms;
   previous_ = piece;
   has_previous_ = true;
   return std::nullopt;
@@ -70,7 +73,7 @@ std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>
 std::optional<Fault> Segmenter::finish(std::vector<Segment>& out) {
   if (!is_open_) return std::nullopt;
   if (auto fault = close_gap(out)) return fault;
-  fit_->add(open_, out);
+  fit_->add(open(), out);
   fit_->finish(out);
   is_open_ = has_previous_ = false;
   return std::nullopt;
@@ -78,7 +81,7 @@ std::optional<Fault> Segmenter::finish(std::vector<Segment>& out) {
 
 /// First node of a chain.
 std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
-  MotorNode& node = open_;
+  MotorNode& node = open();
   node.time_ms = piece.start_ms;
   node.passed_ms = 0;
   node.command = piece.command;
@@ -107,23 +110,41 @@ void Segmenter::enter_piece(const PathPiece& piece) {
     stretch_start_ms_ = piece.start_ms;
   }
   const bool is_new_side = !has_previous_ || piece.step_at_start || !kinematics_.is_linear();
-  const double local_ms = open_.time_ms - piece.start_ms;
+  const double local_ms = open().time_ms - piece.start_ms;
   if (is_new_side) {
     PathMotion point;
     evaluate(piece, local_ms, kinematics_.axes(), point);
-    fill_side(open_.after, piece, local_ms, point);
+    const bool known = !kinematics_.is_linear() && !piece.step_at_start && !open().before.velocity_mu_ms.empty();
+    fill_side(open().after, piece, local_ms, point, known ? &open().before.velocity_mu_ms : nullptr);
   }
-  if (!is_new_side) open_.after = open_.before;
-  open_.step = open_.step || piece.step_at_start;
+  if (!is_new_side) open().after = open().before;
+  open().step = open().step || piece.step_at_start;
 }
 
-/// point: the path at local_ms.
-void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point) const {
+/// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and on
+/// curves with too few nodes.
+void Segmenter::take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const {
+  const double part_of_curve = parameter(piece.part[0], piece.duration_ms) - parameter(piece.part[0], 0);
+  const bool has_few_nodes = piece.duration_ms < kNodesThatTell * config_.segment_time_ms * part_of_curve;
+  if (uniform_ || (piece.part_count == 1 && !has_few_nodes)) return;
+  side.velocity_mu_ms.assign(kinematics_.count(), 0);
+  if (point.velocity == AxisVector{}) return;   // at rest
+  const double step_ms = std::min(kLongestDifference_ms, config_.segment_time_ms / kDifferencesPerSegment);
+  if (!kinematics_.rate_by_differences(point.position, point.velocity, step_ms, side.velocity_mu_ms.data(), piece.source)) side.velocity_mu_ms.clear();
+}
+
+/// point: the path at local_ms. velocity_mu_ms: if it is known.
+void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point, const Row<double>* velocity_mu_ms) const {
   side.stretch = stretch_;
   const bool corner = piece.part_count > 1;
   side.z = corner ? piece.start_ms + local_ms - stretch_start_ms_ : parameter(piece.part[0], local_ms);
   side.z_rate = corner ? 1 : parameter_rate(piece.part[0], local_ms);
-  if (!kinematics_.is_linear()) return;
+  if (!kinematics_.is_linear()) {
+    side.velocity_mu_ms.clear();
+    if (velocity_mu_ms) side.velocity_mu_ms = *velocity_mu_ms;
+    else take_differences(side, piece, point);
+    return;
+  }
   side.velocity_mu_ms.resize(kinematics_.count());
   kinematics_.rate(point.velocity, side.velocity_mu_ms.data());
 }
@@ -145,8 +166,8 @@ void Segmenter::place_nodes(const PathPiece& piece) {
     const double time_ms = origin_ms_ + static_cast<double>(next_grid_) * step_ms;
     if (time_ms > end_ms + (uniform_ ? 0 : -kMinGap_ms)) break;
     ++next_grid_;
-    if (time_ms < open_.time_ms + kMinGap_ms && !uniform_) continue;
-    const double last_ms = places_.empty() ? open_.time_ms : piece.start_ms + places_.back().local_ms;
+    if (time_ms < open().time_ms + kMinGap_ms && !uniform_) continue;
+    const double last_ms = places_.empty() ? open().time_ms : piece.start_ms + places_.back().local_ms;
     if (passes && time_ms + step_ms - last_ms <= longest_ms_) {
       if (passed_ms == 0) passed_ms = time_ms;
       continue;
@@ -155,7 +176,7 @@ void Segmenter::place_nodes(const PathPiece& piece) {
     places_.back().passed_ms = std::exchange(passed_ms, 0.0);
   }
   if (uniform_) return;
-  if (end_ms - open_.time_ms >= kMinGap_ms) {
+  if (end_ms - open().time_ms >= kMinGap_ms) {
     add_turn_nodes(piece, piece.duration_ms);
     places_.back().passed_ms = passed_ms;
   }
@@ -164,7 +185,7 @@ void Segmenter::place_nodes(const PathPiece& piece) {
 
 /// The node at end_ms, and before it as many as the turn of an arc asks for.
 void Segmenter::add_turn_nodes(const PathPiece& piece, double end_ms) {
-  const double start_ms = places_.empty() ? std::max(0.0, open_.time_ms - piece.start_ms) : places_.back().local_ms;
+  const double start_ms = places_.empty() ? std::max(0.0, open().time_ms - piece.start_ms) : places_.back().local_ms;
   const double parts = uniform_ ? 1 : std::max(1.0, std::ceil(turn_rad(piece, start_ms, end_ms) / kMaxTurn_rad - 1e-9));
   for (double i = 1; i < parts; ++i) places_.push_back({start_ms + (end_ms - start_ms) * i / parts, 0});
   places_.push_back({end_ms, 0});
@@ -173,7 +194,7 @@ void Segmenter::add_turn_nodes(const PathPiece& piece, double end_ms) {
 std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out) {
   runtime::poll_interruption();
   const double local_ms = place.local_ms;
-  MotorNode& node = made_;
+  MotorNode& node = nodes_[1 - open_at_];
   node.passed_ms = place.passed_ms;
   node.step = false;
   node.time_ms = local_ms == piece.duration_ms ? piece.start_ms + piece.duration_ms : piece.start_ms + local_ms;
@@ -185,8 +206,8 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& pl
   if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
-  fit_->add(open_, out);
-  std::swap(open_, made_);
+  fit_->add(open(), out);
+  open_at_ = 1 - open_at_;
   return std::nullopt;
 }
 
@@ -196,20 +217,20 @@ std::optional<Fault> Segmenter::close_gap(std::vector<Segment>& out) {
   end_is_open_ = false;
   const PathPiece& piece = previous_;
   const double end_ms = piece.start_ms + piece.duration_ms;
-  const bool is_first = open_.before.stretch == 0;
-  if (is_first || end_ms - open_.time_ms >= kMinGap_ms) return add_node(piece, {piece.duration_ms, 0}, out);
+  const bool is_first = open().before.stretch == 0;
+  if (is_first || end_ms - open().time_ms >= kMinGap_ms) return add_node(piece, {piece.duration_ms, 0}, out);
   PathMotion point;
   evaluate(piece, piece.duration_ms, kinematics_.axes(), point);
-  if (auto fault = kinematics_.position(point.position, open_.position_mu.data(), piece.source)) return fault;
-  open_.time_ms = end_ms;
-  fill_side(open_.before, piece, piece.duration_ms, point);
-  open_.after = open_.before;
+  if (auto fault = kinematics_.position(point.position, open().position_mu.data(), piece.source)) return fault;
+  open().time_ms = end_ms;
+  fill_side(open().before, piece, piece.duration_ms, point);
+  open().after = open().before;
   return std::nullopt;
 }
 
 void Segmenter::abandon(std::vector<Segment>& out) {
   if (!is_open_) return;
-  fit_->add(open_, out);
+  fit_->add(open(), out);
   fit_->finish(out);
   is_open_ = has_previous_ = false;
 }

@@ -5,6 +5,7 @@
 // says which nodes it passes.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,8 +34,10 @@ class Segmenter {
   std::optional<runtime::Fault> start_chain(const PathPiece& piece);
   std::optional<runtime::Fault> add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out);
   std::optional<runtime::Fault> close_gap(std::vector<Segment>& out);
+  MotorNode& open() { return nodes_[open_at_]; }
   void enter_piece(const PathPiece& piece);
-  void fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point) const;
+  void fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point, const Row<double>* velocity_mu_ms = nullptr) const;
+  void take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const;
   void place_nodes(const PathPiece& piece);
   void add_turn_nodes(const PathPiece& piece, double end_ms);
   bool passes_nodes(const PathPiece& piece) const;
@@ -44,9 +47,9 @@ class Segmenter {
   std::unique_ptr<NodeFit> fit_;
   bool uniform_;                        // nodes on the grid only
   double longest_ms_;                   // of a segment on a straight line at constant speed, where nodes may be passed
-  MotorNode open_;                      // last node; its far side is that of the next piece
+  std::array<MotorNode, 2> nodes_;      // the last one, whose far side is that of the next piece, and the one being made
+  std::size_t open_at_ = 0;             // which is the last
   bool is_open_ = false;                // there is one
-  MotorNode made_;                      // the one being made
   PathPiece previous_;                  // last piece
   bool has_previous_ = false;           // there is one
   bool end_is_open_ = false;            // the end of previous_ has no node yet

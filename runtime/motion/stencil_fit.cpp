@@ -5,6 +5,8 @@
 //     stretch 1 (line)        stretch 2 (arc)
 //   --o-----o-----o-----o--|--o-----o---        a node between two stretches has an estimate of each side; where the path is
 //                       ^ join                  smooth they are made one
+//
+// Velocities that the segmenter knows already (in corners, and where a stretch has few nodes) are taken as they are.
 #include <algorithm>
 
 #include "runtime/motion/node_fit.h"
@@ -46,14 +48,18 @@ class StencilFit : public NodeFit {
 
   void make_velocities(std::size_t at) {
     MotorNode& node = nodes_[at];
+    Row<double>&known_before = node.before.velocity_mu_ms, &known_after = node.after.velocity_mu_ms;
+    if (!node.step && known_before.empty()) known_before = known_after;
+    if (!node.step && known_after.empty()) known_after = known_before;
+    if (!known_before.empty() && !known_after.empty()) return;
     Estimate before = estimate(at, false), after = estimate(at, true);
     if (!node.step) {
       if (before.nodes != after.nodes) (before.nodes < after.nodes ? before : after) = before.nodes < after.nodes ? after : before;
       for (std::size_t m = 0; m < before.velocity.size(); ++m)
         before.velocity[m] = after.velocity[m] = (before.velocity[m] + after.velocity[m]) / 2;
     }
-    node.before.velocity_mu_ms = std::move(before.velocity);
-    node.after.velocity_mu_ms = std::move(after.velocity);
+    if (known_before.empty()) known_before = std::move(before.velocity);
+    if (known_after.empty()) known_after = std::move(after.velocity);
   }
 
   double z_in(std::size_t at, std::uint64_t stretch) const {

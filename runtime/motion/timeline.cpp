@@ -11,7 +11,25 @@ namespace {
 
 constexpr std::size_t kBlock = 64;  // samples evaluated together
 
+constexpr std::size_t kFew = 6;      // samples of a segment for which the preparations of a vectorised loop are not worth it
+
 double end_of(const TimedSegment& segment) { return segment.start_ms + segment.duration_ms; }
+
+/// position: [motor][stride].
+void evaluate_few(const Segment& segment, std::span<const double> at, double* position, std::size_t stride) {
+  for (const MotorCubic& q : segment.motor) {
+    switch (at.size()) {
+      case 6: position[5] = q.position(at[5]); [[fallthrough]];
+      case 5: position[4] = q.position(at[4]); [[fallthrough]];
+      case 4: position[3] = q.position(at[3]); [[fallthrough]];
+      case 3: position[2] = q.position(at[2]); [[fallthrough]];
+      case 2: position[1] = q.position(at[1]); [[fallthrough]];
+      case 1: position[0] = q.position(at[0]); break;
+      default: break;
+    }
+    position += stride;
+  }
+}
 
 }  // namespace
 
@@ -154,6 +172,7 @@ void Timeline::sample_segment(const TimedSegment& segment, std::span<const doubl
     const double t = time[k] - segment_ms, d = t * (rate + t * half_slope), inside = d < end ? d : end;
     at[k] = t <= 0 ? 0 : inside;
   }
+  if (n <= kFew && velocity_mu_ms.empty()) return evaluate_few(segment.segment, {at.data(), n}, position_mu.data() + first, count);
   for (std::size_t m = 0; m < segment.segment.motor.size(); ++m) {
     const MotorCubic q = segment.segment.motor[m];
     double* position = position_mu.data() + m * count + first;

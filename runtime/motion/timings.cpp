@@ -24,6 +24,7 @@ void Timings::reset(bool sync_on_segments) {
 void Timings::start_sequence(double start_ms) {
   covered_programmed_ms_ = 0;
   covered_ms_ = start_ms;
+  due_ms_ = 0;
 }
 
 void Timings::add(const MoveBegin& begin) {
@@ -33,6 +34,7 @@ void Timings::add(const MoveBegin& begin) {
   cover_now(record.start);
   note_start(record);
   records_.push_back(record);
+  due_ms_ = std::min(due_ms_, begin.sync_ms);
 }
 
 void Timings::add(const MoveEnd& end) {
@@ -40,6 +42,7 @@ void Timings::add(const MoveEnd& end) {
     Record& record = records_[i];
     if (record.id != end.id) continue;
     record.end = {end.end_ms, 0, true};
+    due_ms_ = std::min(due_ms_, end.end_ms);
     cover_now(record.end);
     break;
   }
@@ -69,6 +72,11 @@ void Timings::cover_place(Place& place, const TimedSegment& segment, bool round_
 
 void Timings::cover(const TimedSegment& segment) {
   const double end_ms = segment.segment.start_ms + segment.segment.duration_ms;
+  if (due_ms_ > end_ms + kSamePlace_ms) {
+    covered_programmed_ms_ = end_ms;
+    covered_ms_ = segment.start_ms + segment.duration_ms;
+    return;
+  }
   for (std::size_t i = 0; i < records_.size(); ++i) {
     Record& record = records_[i];
     if (record.sync.programmed_ms > end_ms + kSamePlace_ms) break;
@@ -81,6 +89,19 @@ void Timings::cover(const TimedSegment& segment) {
   covered_programmed_ms_ = end_ms;
   covered_ms_ = segment.start_ms + segment.duration_ms;
   deliver();
+  find_due();
+}
+
+void Timings::find_due() {
+  due_ms_ = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Place& place) {
+    if (place.given && !place.known) due_ms_ = std::min(due_ms_, place.programmed_ms);
+  };
+  for (std::size_t i = 0; i < records_.size() && records_[i].sync.programmed_ms <= due_ms_; ++i) {
+    consider(records_[i].sync);
+    consider(records_[i].start);
+    consider(records_[i].end);
+  }
 }
 
 void Timings::end_sequence() {

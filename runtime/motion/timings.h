@@ -45,6 +45,8 @@ class Timings {
   Ring<double> starts_ms_;        // known, ascending
   int unknown_starts_ = 0;
   std::size_t sync_delivered_ = 0;      // first records whose sync time has been handed on
+  double due_ms_ = 0;                   // no place before this is still to be covered
+  void find_due();
   std::vector<SyncTime> sync_times_;
   std::vector<MoveTiming> finished_;
   double covered_programmed_ms_ = 0, covered_ms_ = 0;

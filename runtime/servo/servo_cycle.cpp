@@ -23,7 +23,8 @@ struct Watch {
   ServoPlant body;
   double fatal_mu = 0, warning_mu = 0, band_mu = 0;   // 0: off, for the first two
   double plus_switch_mu = kNever, minus_switch_mu = -kNever;
-  PositionRange range;
+  PositionRange range;          // of commanded positions on the path
+  PositionRange actual_range;   // of a plant
   bool holds_at_limit = false, stops_at_limit = false;
   bool amplifier_fault = false;
   std::optional<Trigger> trigger;
@@ -57,6 +58,12 @@ ServoGains gains_of(const ElementStore& e, unsigned n) {
 
 bool has_plant(const ElementStore& e, int motor) { return e.get(ElementId::kSimMotorPlant, static_cast<unsigned>(motor)) != 0; }
 
+/// Where the software limits themselves are: commanded positions stay SoftLimitOffset inside them.
+PositionRange actual_limits(const ElementStore& e, unsigned n) {
+  const double min_mu = e.get(ElementId::kMotorMinPos, n), max_mu = e.get(ElementId::kMotorMaxPos, n);
+  return max_mu > min_mu ? PositionRange{min_mu, max_mu} : PositionRange{};
+}
+
 void watch_plant(const ElementStore& e, const Motor& m, Watch& w) {
   const auto n = static_cast<unsigned>(m.number);
   w.gains = gains_of(e, n);
@@ -66,6 +73,8 @@ void watch_plant(const ElementStore& e, const Motor& m, Watch& w) {
   w.warning_mu = e.get(ElementId::kMotorWarnFeLimit, n);
   w.band_mu = e.get(ElementId::kMotorInPosBand, n);
   if (m.seeks_trigger()) w.trigger = trigger_of(e, m.number);
+  const bool stops_already = m.limit_stop == Motor::LimitStop::kPlusPosition || m.limit_stop == Motor::LimitStop::kMinusPosition;
+  if (m.moving() && m.closed_loop && !m.homing() && !stops_already) w.actual_range = actual_limits(e, n);
 }
 
 void watch_switches(const ElementStore& e, unsigned n, Watch& w) {
@@ -119,6 +128,8 @@ std::optional<ServoTrip> trip_at(const Run& r, double commanded_raw_mu, double a
     return ServoTrip{motor, ServoTrip::Kind::kPlusPosition, commanded_raw_mu - home_mu};
   if (w.stops_at_limit && step_mu < 0 && commanded_raw_mu - home_mu < w.range.min_mu - kRounding_mu)
     return ServoTrip{motor, ServoTrip::Kind::kMinusPosition, commanded_raw_mu - home_mu};
+  if (step_mu > 0 && actual_raw_mu - home_mu > w.actual_range.max_mu) return ServoTrip{motor, ServoTrip::Kind::kPlusActual, actual_raw_mu - home_mu};
+  if (step_mu < 0 && actual_raw_mu - home_mu < w.actual_range.min_mu) return ServoTrip{motor, ServoTrip::Kind::kMinusActual, actual_raw_mu - home_mu};
   if (w.trigger)
     if (const auto met = w.trigger->met_between(r.actual_raw_mu, actual_raw_mu)) return ServoTrip{motor, ServoTrip::Kind::kTrigger, *met};
   return std::nullopt;

@@ -156,8 +156,10 @@ int decode_text(const std::string& text, const std::string& name, const sl::Comm
     std::string meaning, why;
     if (is_command) {
       const auto frame = sl::decode_command(bytes);
-      if (const auto* good = std::get_if<sl::CommandFrame>(&frame)) meaning = sl::describe(*good, commands);
+      const auto* good = std::get_if<sl::CommandFrame>(&frame);
+      if (good) meaning = sl::describe(*good, commands);
       else why = std::get<std::string>(frame);
+      if (good && !sl::has_its_parameters(*good, commands)) code = 1;
     } else {
       const auto frame = sl::decode_reply(bytes);
       if (const auto* good = std::get_if<sl::ReplyFrame>(&frame)) meaning = sl::describe(*good, commands);

@@ -34,8 +34,8 @@ std::string away_from(const std::array<double, 3>& position_mu, const std::array
 
 }  // namespace
 
-MotionRun run_motion(const std::string& text, const std::string& set_up, const std::string& commands) {
-  ProgramBench bench("random.pmc", set_up + "\n" + text);
+MotionRun run_motion(const std::string& text, const std::string& set_up, const std::string& commands, CommandObserver observer) {
+  ProgramBench bench("random.pmc", set_up + "\n" + text, motion::FineInterpolation::kThrough, false, std::move(observer));
   bench.run(commands);
   MotionRun run;
   run.period_ms = bench.machine->servo_period_ms();

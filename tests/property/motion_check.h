@@ -17,8 +17,10 @@ struct MotionRun {
   std::string fault;
 };
 
-/// set_up: put before the program, e.g. another servo period.
-MotionRun run_motion(const std::string& text, const std::string& set_up = "", const std::string& commands = "&1 b1r");
+using CommandObserver = std::function<void(int coord, const motion::MotionCommand&)>;
+
+/// set_up: put before the program, e.g. another servo period. observer: of the moves, as they are calculated.
+MotionRun run_motion(const std::string& text, const std::string& set_up = "", const std::string& commands = "&1 b1r", CommandObserver observer = {});
 
 /// Each answers what is wrong, or empty.
 std::string wrong_end(const reference::RandomMotion& motion, const MotionRun& run);

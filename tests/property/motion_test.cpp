@@ -3,8 +3,10 @@
 #include <cstdlib>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 #include <rapidcheck.h>
 
+#include "runtime/motion/pipeline.h"
 #include "tests/property/motion_check.h"
 
 using namespace pmac::test;
@@ -85,7 +87,63 @@ void expect(const std::string& wrong, const RandomMotion& motion) {
   if (!wrong.empty()) RC_FAIL(wrong + "\n" + motion.text);
 }
 
+/// Moves that the planner blends or stops between by itself: no rapid moves, dwells, pvt and splines, before which a program waits for rest.
+MotionSpec any_blended_motion() {
+  MotionSpec spec = any_motion(0);
+  std::erase_if(spec.items, [](const MotionItem& item) { return item.kind == 7 || item.kind == 8 || item.kind == 12 || item.kind == 13; });
+  return spec;
+}
+
+pmac::motion::PipelineConfig whole_path_config(const MotionSetUp& s, double period_ms) {
+  const double inv_accel = std::stod(fmt::format("{:.9g}", 10.0 / s.accel));   // as the program's text says it
+  pmac::motion::PipelineConfig config;
+  config.segment_time_ms = s.segment_ms;
+  config.servo_period_ms = period_ms;
+  config.map.matrix_mu_uu.assign(3 * pmac::bytecode::kAxisCount, 0);
+  config.map.offset_mu.assign(3, 0);
+  for (std::size_t m = 0; m < 3; ++m) {
+    config.map.motors.push_back(static_cast<int>(m) + 1);
+    config.map.matrix_mu_uu[m * pmac::bytecode::kAxisCount + static_cast<std::size_t>(pmac::bytecode::axis_index_from_name("X")) + m] = 1000;
+    config.limits.push_back({static_cast<double>(s.max_speed), inv_accel, inv_accel, 50});
+  }
+  return config;
+}
+
+/// All commands of the program at once, from rest at start_ms on; positions at the ticks from there to the end.
+std::vector<std::array<double, 3>> whole_path(const std::vector<pmac::motion::MotionCommand>& commands, const pmac::motion::PipelineConfig& config, double start_ms) {
+  pmac::motion::Pipeline pipeline;
+  pipeline.reset(config, {}, start_ms);
+  for (const auto& command : commands)
+    if (auto fault = pipeline.add(command)) RC_FAIL(fault->detail);
+  if (auto fault = pipeline.end_sequence()) RC_FAIL(fault->detail);
+  std::vector<std::array<double, 3>> rows;
+  for (double tick = std::ceil(start_ms / config.servo_period_ms); tick * config.servo_period_ms <= pipeline.end_ms(); ++tick) {
+    std::array<double, 3> row{};
+    pipeline.sample(tick * config.servo_period_ms, row, {});
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 }  // namespace
+
+TEST_CASE("random motion: without lookahead a program run as it goes moves as its whole path does", "[property][motion]") {
+  holds("streaming without lookahead", [] {
+    const MotionSpec spec = any_blended_motion();
+    const RandomMotion motion = random_motion(spec);
+    std::vector<pmac::motion::MotionCommand> commands;
+    const MotionRun run = run_motion(motion.text, "", "&1 b1r", [&](int, const pmac::motion::MotionCommand& command) { commands.push_back(command); });
+    if (!run.fault.empty()) RC_FAIL(run.fault + "\n" + motion.text);
+    if (commands.empty()) return;
+    const double start_ms = run.moves.front().start_ms;
+    const auto rows = whole_path(commands, whole_path_config(spec.set_up, run.period_ms), start_ms);
+    const auto first = static_cast<std::size_t>(std::ceil(start_ms / run.period_ms));
+    if (run.position_mu.size() < first + rows.size()) RC_FAIL("it ends earlier than its whole path\n" + motion.text);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      for (std::size_t m = 0; m < 3; ++m)   // a tick's time rounds differently
+        if (!(std::abs(run.position_mu[first + k][m] - rows[k][m]) <= 1e-6)) RC_FAIL("tick " + std::to_string(first + k) + ": " + std::to_string(run.position_mu[first + k][m]) + ", whole path " + std::to_string(rows[k][m]) + "\n" + motion.text);
+  });
+}
 
 TEST_CASE("random motion: ends, dwells, lengths and times are those of the program", "[property][motion]") {
   holds("ends, dwells, lengths, times", [] {

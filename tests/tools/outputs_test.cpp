@@ -173,3 +173,27 @@ TEST_CASE("record: a motor that moves when the columns stand is named", "[tools]
   CHECK(late.err.find("motor 5 moved for the first time when the columns of the record stood already") != std::string::npos);
   CHECK(w.read("r.csv").starts_with("time_s,Motor[1].DesPos,X\n"));
 }
+
+TEST_CASE("archives: with the number of rows known beforehand or not, the bytes are the same, also where the run ends early", "[tools]") {
+  const Workspace w;
+  w.write("loop.pmc", "&1\n#1->1000X\n#2->1000Y\nCoord[1].SegMoveTime=5\nopen prog 1\nlinear abs ta10 F100\nwhile (P1 < 50000)\n{\nX(P1 % 7) Y(P1 % 3)\nP1=P1+1\n}\nclose\n");
+  const std::string run = "pmac-run loop.pmc -q -e '&1b1r' ";
+  REQUIRE(w.shell(run + "--until 20 --record known.npz").code == 0);
+  REQUIRE(w.shell(run + "--max-time 20 --record unknown.npz").code == 4);
+  CHECK(w.read("known.npz").size() > 5 * 40'000 * 8);
+  CHECK((w.read("known.npz") == w.read("unknown.npz")));
+  REQUIRE(w.shell(run + "--until 3000 --max-output 3 --record early.npz").code == 4);
+  REQUIRE(w.shell(run + "--max-output 3 --record early_unknown.npz").code == 4);
+  CHECK((w.read("early.npz") == w.read("early_unknown.npz")));
+  CHECK(w.read("early.npz").size() < 3000 * 2258 * 5 * 8 / 2);
+}
+
+TEST_CASE("a record beyond the file size limit of the shell is an error, and leaves nothing", "[tools]") {
+  const Workspace w;
+  for (const char* file : {"a.npz", "a.csv"}) {
+    const ToolResult r = w.shell("ulimit -f 100; pmac-run " + program("05_blended_contour.pmc") + " -q -e '&1b1r' --until 20 --record " + file);
+    CHECK(r.code == 2);
+    CHECK(r.err.find("cannot write") != std::string::npos);
+    CHECK(w.shell("ls -A | grep -E 'npz|csv'").out == "");
+  }
+}

@@ -141,6 +141,10 @@ TEST_CASE("silverlode decode: what is no frame is named with its line", "[tools]
   CHECK(contains(ran.out, "acknowledged by 16"));
   CHECK(contains(ran.out, "wants 4 parameters"));
   CHECK(w.run("pmac-silverlode", "decode nowhere.txt").code == 2);
+  w.write("count.txt", "@17 253 1 2\n");
+  CHECK(w.run("pmac-silverlode", "decode count.txt").code == 1);
+  w.write("good.txt", "@16 163\n* 10\n");
+  CHECK(w.run("pmac-silverlode", "decode good.txt").code == 0);
 }
 
 TEST_CASE("drive silverlode: the contour stays within three counts and ends where it began", "[tools]") {

@@ -166,6 +166,11 @@ std::vector<std::optional<std::string>> FrameCutter::take(std::string_view bytes
   return frames;
 }
 
+bool has_its_parameters(const CommandFrame& frame, const CommandSet& commands) {
+  const CommandRow* row = commands.find(frame.command);
+  return row == nullptr || static_cast<int>(frame.parameters.size()) == row->parameters;
+}
+
 std::string describe(const CommandFrame& frame, const CommandSet& commands) {
   const CommandRow* row = commands.find(frame.command);
   std::string text = row == nullptr ? fmt::format("command {}", frame.command) : std::string(row->text);
@@ -174,7 +179,7 @@ std::string describe(const CommandFrame& frame, const CommandSet& commands) {
     return text + fmt::format(": {} ticks, pos {}, acc {}, vel {}", frame.parameters[0], frame.parameters[1], frame.parameters[2], frame.parameters[3]);
   if (!frame.parameters.empty()) text += fmt::format(": {}", fmt::join(frame.parameters, " "));
   if (row == nullptr) return text + "  (no known command)";
-  if (static_cast<int>(frame.parameters.size()) != row->parameters) text += fmt::format("  (wants {} parameters)", row->parameters);
+  if (!has_its_parameters(frame, commands)) text += fmt::format("  (wants {} parameters)", row->parameters);
   return text;
 }
 

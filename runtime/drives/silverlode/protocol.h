@@ -94,6 +94,9 @@ class FrameCutter {
   bool too_long_ = false;
 };
 
+/// False where a known command stands with more or fewer parameters than it has.
+bool has_its_parameters(const CommandFrame& frame, const CommandSet& commands);
+
 /// "IMW to 16: 2928 ticks, pos -1073741824, acc 8361, vel 351144", for people.
 std::string describe(const CommandFrame& frame, const CommandSet& commands);
 std::string describe(const ReplyFrame& frame, const CommandSet& commands);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -26,7 +27,7 @@ inline std::string read_program(const std::string& name) {
 class ProgramBench : public runtime::SampleSink {
  public:
   explicit ProgramBench(const std::string& name, std::string text = {}, motion::FineInterpolation fine = motion::FineInterpolation::kThrough,
-                        bool limit_jerk = false) {
+                        bool limit_jerk = false, std::function<void(int, const motion::MotionCommand&)> command_observer = {}) {
     if (text.empty()) text = read_program(name);
     auto module = session_.compile({{name, text}});
     for (const auto& d : session_.diagnostics().take()) diagnostics.push_back(d.message);
@@ -44,6 +45,7 @@ class ProgramBench : public runtime::SampleSink {
       if (!compiled) return std::string("refused");
       return std::move(*compiled);
     };
+    options.observers.motion_command = std::move(command_observer);
     options.observers.move = [this](const runtime::MoveRecord& m) { moves.push_back(m); };
     options.observers.output = [this](const runtime::OutputChange& c) { outputs.push_back(c); };
     options.observers.fault = [this](const runtime::FaultRecord& f) { faults.push_back(f); };

@@ -13,13 +13,6 @@ TEST_CASE("a gantry follower of ServoCtrl 8 is said not to be simulated", "[prog
   CHECK(plain.warnings.empty());
 }
 
-TEST_CASE("InPosTimeOut is said not to be simulated", "[programs][set_up]") {
-  const Lines waits("X1", "Coord[1].InPosTimeOut=100"), none("X1", "Coord[1].InPosTimeOut=0");
-  REQUIRE(waits.warnings.size() == 1);
-  CHECK(waits.warnings[0].find("Coord[1].InPosTimeOut = 100: waits until motors are in position are not simulated") == 0);
-  CHECK(none.warnings.empty());
-}
-
 TEST_CASE("a reset leaves the machine around the controller as it is", "[programs][set_up]") {
   Lines bench("X1", "Sim.Motor[1].TriggerPos=5000 Sim.Motor[2].Plant=1 Motor[1].JogSpeed=77");
   for (const char* reset : {"$$$", "$$$***"}) {

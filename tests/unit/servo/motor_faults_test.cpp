@@ -225,3 +225,41 @@ TEST_CASE("a fault in the middle of a run of samples leaves the other coordinate
   for (std::size_t k = 0; k < std::min(alone.motor_mu.size(), bench.motor_mu.size()); ++k) REQUIRE(alone.motor_mu[k][3] == bench.motor_mu[k][3]);
   for (std::size_t k = 0; k < bench.time_ms.size(); ++k) REQUIRE(bench.time_ms[k] == static_cast<double>(k));
 }
+
+TEST_CASE("the actual position of a motor with a plant is held against the software limits themselves", "[faults]") {
+  // Twice the velocity feed-forward: at v the motor is ahead of its command by v (Kvff - Kvfb) / Kp = v (80 - 40) / 4, 89 mu here; more while
+  // it brakes.
+  const std::string ahead = kSetUp + "Sim.Motor[1].Plant=1 Motor[1].FatalFeLimit=0 Motor[1].Servo.Kvff=80\nMotor[1].MinPos=-10000 Motor[1].MaxPos=10000\n";
+  const auto program = [](const char* x) { return "open prog 1\nlinear abs ta100 ts0 F10 X" + std::string(x) + " Y5\nclose\n"; };
+  for (const char* x : {"9.95", "-9.95"}) {
+    ProgramBench bench("a.pmc", ahead + program(x));
+    bench.run("&1 b1r");
+    REQUIRE(bench.faults.size() == 1);
+    CHECK(bench.faults[0].fault.kind == FaultKind::kSoftLimit);
+    CHECK(bench.faults[0].fault.detail.find("the actual position of motor 1") == 0);
+    CHECK(bench.faults[0].fault.detail.find(x[0] == '-' ? "Motor[1].MinPos = -10000" : "Motor[1].MaxPos = 10000") != std::string::npos);
+    CHECK(std::abs(position_mu(bench, bench.faults[0].time_ms)) < 9950);   // commanded
+    bench.machine->command(x[0] == '-' ? "Motor[1].SoftMinusLimit Coord[1].ErrorStatus" : "Motor[1].SoftPlusLimit Coord[1].ErrorStatus");
+    CHECK(bench.answers.at(0).back() == '1');
+    CHECK(bench.answers.at(1) == "Coord[1].ErrorStatus=32");
+  }
+  for (const char* x : {"9.7", "-9.7"}) {
+    ProgramBench bench("a.pmc", ahead + program(x));
+    bench.run("&1 b1r");
+    CHECK(bench.faults.empty());
+    CHECK(bench.motor(2).final_mu == 5000);
+  }
+  ProgramBench jog("a.pmc", ahead);
+  jog.run("#1j=9950");
+  CHECK(jog.faults.empty());
+  REQUIRE(jog.warnings.size() == 1);
+  CHECK(jog.warnings[0].find("the actual position of motor 1") == 0);
+}
+
+TEST_CASE("SoftLimitOffset leaves room for a motor that overshoots", "[faults]") {
+  ProgramBench bench("a.pmc", kSetUp + "Sim.Motor[1].Plant=1 Motor[1].FatalFeLimit=0 Motor[1].Servo.Kvff=80\nMotor[1].MinPos=-10000 Motor[1].MaxPos=10000 Motor[1].SoftLimitOffset=400\n");
+  bench.run("#1j=20000");
+  CHECK(largest_mu(bench) == 9600);
+  REQUIRE(bench.warnings.size() == 1);   // the jog ends at the limit of commanded positions
+  CHECK(bench.warnings[0].find("ends at Motor[1].MaxPos") != std::string::npos);
+}
