@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 namespace pmac::acr1000 {
@@ -43,7 +44,7 @@ CardConfig common_config(const Settings& settings) {
   const double parameters = system("PARAMS").value_or(50);
   if (parameters >= 1 && parameters <= bytecode::kPCount) config.parameter_count = static_cast<std::size_t>(parameters);
   const auto version = settings.find("system.VERSION");
-  config.wide_velocity = version != settings.end() && std::atoi(version->second.c_str()) >= 4;
+  config.wide_velocity = version != settings.end() && std::strtol(version->second.c_str(), nullptr, 10) >= 4;
   return config;
 }
 
@@ -52,7 +53,7 @@ std::map<int, bool> relays_of(const Settings& settings, const std::string& prefi
   std::map<int, bool> relays;
   const std::string first = prefix + std::string(kBit);
   for (auto at = settings.lower_bound(first); at != settings.end() && at->first.starts_with(first); ++at)
-    if (at->second == "1") relays[std::atoi(at->first.c_str() + first.size())] = true;
+    if (at->second == "1") relays[static_cast<int>(std::strtol(at->first.c_str() + first.size(), nullptr, 10))] = true;
   return relays;
 }
 

@@ -1,7 +1,6 @@
 #include "runtime/tool/budget.h"
 
-#include <cstdio>
-#include <memory>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,9 +14,9 @@ constexpr unsigned kCallsPerLook = 16;   // at memory: reading it costs microsec
 }  // namespace
 
 std::uint64_t memory_in_use() {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"), std::fclose);
-  unsigned long long total = 0, resident = 0;
-  if (!file || std::fscanf(file.get(), "%llu %llu", &total, &resident) != 2) return 0;
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t total = 0, resident = 0;
+  if (!(file >> total >> resident)) return 0;
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 

@@ -116,7 +116,7 @@ bool Console::wait(const std::string& line) {
   waits_ = std::regex_match(line, match, kWait);
   if (waits_) {
     wait_idle_ = std::isalpha(static_cast<unsigned char>(match[1].str()[0])) != 0;
-    wait_ms_ = wait_idle_ ? 0 : std::atof(match[1].str().c_str());
+    wait_ms_ = wait_idle_ ? 0 : std::strtod(match[1].str().c_str(), nullptr);
     return true;
   }
   if (!std::regex_match(line, match, kOwnWord)) return false;

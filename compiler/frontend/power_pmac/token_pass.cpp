@@ -92,7 +92,8 @@ class TokenPass {
     int depth = 0;
     do {
       depth += type(next) == T::LEFT ? 1 : type(next) == T::RIGHT ? -1 : 0;
-    } while (next++ < in_.size() && depth > 0 && ends_not(type(next)));
+      ++next;
+    } while (next <= in_.size() && depth > 0 && ends_not(type(next)));
     if (depth != 0 || type(next) != T::LEFT_BRACE) return;
     std::string word = in_[at_]->getText();
     std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -224,7 +225,8 @@ class TokenPass {
       int depth = 0;
       do {
         depth += type(next) == T::LEFT ? 1 : type(next) == T::RIGHT ? -1 : 0;
-      } while (next++ < in_.size() && depth > 0 && ends_not(type(next)));
+        ++next;
+      } while (next <= in_.size() && depth > 0 && ends_not(type(next)));
     } else {
       return false;
     }

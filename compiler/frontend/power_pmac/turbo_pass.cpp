@@ -41,6 +41,8 @@ const Row* find_row(const Row (&rows)[N], std::string_view word) {
   return row == std::end(rows) ? nullptr : row;
 }
 
+constexpr double kMostVariables = 65536;  // of one letter
+
 constexpr std::string_view kMemories[] = {"x", "y", "l", "d", "f", "dp", "tws", "twb", "twd", "twr"};
 
 class TurboPass {
@@ -150,11 +152,11 @@ class TurboPass {
     if (i < 2 || tokens_.type(i - 1) != T::NUMBER || tokens_.type(i + 1) != T::NUMBER || tokens_.type(i + 2) != T::ASSIGN) return;
     const std::size_t letter = tokens_.type(i - 2);
     if (letter != T::VAR && letter != T::LETTER_M && letter != T::LETTER_I) return;
-    const long first = std::atol(tokens_.text(i - 1).c_str()), last = std::atol(tokens_.text(i + 1).c_str());
+    const double first = std::strtod(tokens_.text(i - 1).c_str(), nullptr), last = std::strtod(tokens_.text(i + 1).c_str(), nullptr);
     const std::string power = fmt::format("{}{},{}", tokens_.exact_text(i - 2), first, last - first + 1);
     const source::Span span = source::join(tokens_.span(i - 2), tokens_.span(i + 1));
     auto* error = tokens_.error("PM2024", span, fmt::format("a range of variables is Turbo PMAC; write the first one and how many: {}", power));
-    if (error && last >= first) error->fix = source::FixIt{span, power};
+    if (error && last >= first && last < kMostVariables) error->fix = source::FixIt{span, power};
     tokens_.drop(i, i + 1);
   }
 

@@ -38,7 +38,7 @@ bool begins_with_end_word(std::string_view line) {
 bool defines_memory_pointer(std::string_view line) {
   if (line.empty() || std::tolower(static_cast<unsigned char>(line[0])) != 'm') return false;
   const std::size_t arrow = line.find("->");
-  if (arrow == std::string_view::npos || arrow > 20) return false;
+  if (arrow > 20) return false;   // or none
   const std::string_view target = trimmed(line.substr(arrow + 2));
   const std::string memory = lower_word(target);
   return memory.size() <= 3 && target.size() > memory.size() && target[memory.size()] == ':' && memory != "u" && memory != "s";
