@@ -1,5 +1,6 @@
 // Linear axis definitions: a matrix from axes to motors, and its inverse for the start position of a program. Singular and
 // incomplete definitions are refused with the reason; gantries are allowed.
+#include <algorithm>
 #include <string_view>
 
 #include <Eigen/Dense>
@@ -117,9 +118,24 @@ void AxisMap::motor_rates_from_axis_rates(const AxisVector& axis_rate, std::span
 }
 
 void AxisMap::axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu) const {
-  std::vector<double> from_origin(motor_mu.begin(), motor_mu.end());
-  for (std::size_t i = 0; i < definitions_.size(); ++i) from_origin[i] -= definitions_[i].offset_mu;
-  axis_rates_from_motor_rates(from_origin, axis_uu);
+  if (!solvable_) return;
+  for (std::size_t c = 0; c < axes_.size(); ++c) {
+    double sum = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) sum += inverse_uu_mu_[c * rows_.size() + r] * (motor_mu[rows_[r]] - definitions_[rows_[r]].offset_mu);
+    axis_uu[axes_[c]] = sum;
+  }
+}
+
+bool AxisMap::axis_row_from_motor_rows(int axis, std::span<const double* const> motor_mu, std::span<double> axis_uu) const {
+  const auto column = static_cast<std::size_t>(std::find(axes_.begin(), axes_.end(), axis) - axes_.begin());
+  if (!solvable_ || column == axes_.size()) return false;
+  std::fill(axis_uu.begin(), axis_uu.end(), 0.0);
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const double factor = inverse_uu_mu_[column * rows_.size() + r], offset_mu = definitions_[rows_[r]].offset_mu;
+    const double* row = motor_mu[rows_[r]];
+    for (std::size_t k = 0; k < axis_uu.size(); ++k) axis_uu[k] += factor * (row[k] - offset_mu);
+  }
+  return true;
 }
 
 void AxisMap::axis_rates_from_motor_rates(std::span<const double> motor_rate, AxisVector& axis_rate) const {

@@ -46,6 +46,9 @@ class AxisMap {
   void motors_from_axes(const AxisVector& axis_uu, std::span<double> motor_mu) const;
   /// Overwrites the axes in linear_axes() with the solution. Only when solvable().
   void axes_from_motors(std::span<const double> motor_mu, AxisVector& axis_uu) const;
+  /// The same for samples side by side: one axis, from the rows of definitions()[i] (count samples each), into axis_uu. False where the
+  /// axis is none of linear_axes(); nothing is written then.
+  bool axis_row_from_motor_rows(int axis, std::span<const double* const> motor_mu, std::span<double> axis_uu) const;
   /// The same of velocities (or any derivative): offsets do not count.
   void motor_rates_from_axis_rates(const AxisVector& axis_rate, std::span<double> motor_rate) const;
   void axis_rates_from_motor_rates(std::span<const double> motor_rate, AxisVector& axis_rate) const;

@@ -75,6 +75,7 @@ class MachineHost : public Host {
   }
 
   double read_element(Thread& thread, const ElementAddress& address) override {
+    s_.catch_up();
     return read_element_value(s_, Runner::of(thread), address);
   }
 
@@ -91,6 +92,7 @@ class MachineHost : public Host {
   }
 
   Flow control(Thread& thread, bytecode::ControlVerb verb, std::span<const double> arguments) override {
+    s_.catch_up();
     Runner& runner = Runner::of(thread);
     std::string refusal;
     const Flow flow = execute_control(s_, runner, verb, arguments, refusal);
@@ -115,6 +117,7 @@ class MachineHost : public Host {
   }
 
   Flow command(Thread& thread, std::string_view text) override {
+    s_.catch_up();
     if (s_.queued.size() >= kMaxQueuedCommands) return fault(thread, FaultKind::kRunTime, "too many cmd texts wait");
     s_.queued.push_back({Machine::State::sender_key(Runner::of(thread)), std::string(text), thread.source()});
     return Flow::kContinue;
@@ -168,6 +171,7 @@ class MachineHost : public Host {
   }
 
   double read_field(Thread& thread, const PointerEntry& pointer) {
+    s_.catch_up();
     const double word = read_element_value(s_, Runner::of(thread), pointer.element);
     return pointer.definition.has_field ? read_bit_field(word, pointer.definition) : word;
   }
@@ -196,6 +200,7 @@ class MachineHost : public Host {
 };
 
 Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double value) {
+  s_.catch_up();
   Runner& runner = Runner::of(thread);
   const bytecode::ElementInfo& info = element_info(a.id);
   if (info.access == ElementAccess::kStatus) {
@@ -219,6 +224,7 @@ Flow MachineHost::write_element(Thread& thread, const ElementAddress& a, double 
         return fault(thread, FaultKind::kRunTime, fmt::format("{} cannot be set to {} now", info.name, number_text(value)));
       (a.id == ElementId::kSysServoPeriod ? s_.servo_period_ms : rti) = value;
       s_.rti_cycles = static_cast<std::int64_t>(rti) + 1;
+      s_.rti_asked_cycles = 0;
       break;
     case ElementId::kSysCdTimer: s_.elements.assign(a, s_.now_ms + value); return Flow::kContinue;
     case ElementId::kSysP: s_.p[a.index[0]] = value; return Flow::kContinue;

@@ -239,6 +239,11 @@ bool Machine::axes_from_motors(int coord, std::span<const double> motor_mu, moti
   return state_->coord(coord).axes_from_motors(motor_mu, axis_uu, why);
 }
 
+const kinematics::AxisMap* Machine::linear_axes(int coord) const {
+  const CoordSystem& c = state_->coord(coord);
+  return c.has_forward() || !c.map().solvable() ? nullptr : &c.map();
+}
+
 void Machine::set_robot(int coord, std::shared_ptr<const kinematics::Robot> robot, std::vector<double> motor_mu_per_joint) {
   state_->coord(coord).robot = {std::move(robot), std::move(motor_mu_per_joint)};
 }

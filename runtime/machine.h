@@ -29,6 +29,7 @@ namespace pmac::motion {
 struct StageObservers;
 }
 namespace pmac::kinematics {
+class AxisMap;
 class Robot;
 }
 
@@ -97,6 +98,7 @@ struct MachineOptions {
   TraceDetail trace = TraceDetail::kNone;
   std::uint64_t trace_limit = 1'000'000;                      // records; the run goes on without
   std::uint64_t max_instructions = 20'000'000'000;            // of a whole run
+  bool free_runs = true;                                      // false: servo samples are made event by event (the same ones)
 };
 
 enum class RunEnd { kIdle, kUntil, kTimeLimit, kBudget, kInterrupted };
@@ -156,6 +158,8 @@ class Machine {
   /// (the forward map). False where the forward routine has no solution.
   std::uint32_t axes_of(int coord) const;
   bool axes_from_motors(int coord, std::span<const double> motor_mu, motion::AxisVector& axis_uu, std::string* why = nullptr);
+  /// The linear map of a coordinate system; null where a routine or a robot has a part in the forward map.
+  const kinematics::AxisMap* linear_axes(int coord) const;
   /// Motor positions of an axis position, into motor_mu by motor number; the fault where there is none.
   std::optional<Fault> motors_from_axes(int coord, const motion::AxisVector& axis_uu, std::span<double> motor_mu);
   /// A stock robot in place of the kinematic routines of a coordinate system: its motors ->I, ascending, are the joints, each with its

@@ -115,6 +115,7 @@ void Machine::State::reset_now() {
   }
   servo_period_ms = elements.get(ElementId::kSysServoPeriod);
   rti_cycles = static_cast<std::int64_t>(elements.get(ElementId::kSysRtIntPeriod)) + 1;
+  rti_asked_cycles = 0;
 }
 
 }  // namespace pmac::runtime

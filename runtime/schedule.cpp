@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/bytecode/element.h"
+#include "runtime/free_run.h"
 #include "runtime/interruption.h"
 #include "runtime/motor_faults.h"
 #include "runtime/motor_moves.h"
@@ -34,6 +35,14 @@ void shorten_rows(std::vector<double>& rows, std::size_t count, std::size_t wide
     std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(u * wide), narrow, rows.begin() + static_cast<std::ptrdiff_t>(u * narrow));
 }
 
+/// Servo ticks after the last sampled one up to time_ms, where there is one; at most `most` of them.
+int ticks_up_to(const Machine::State& s, double time_ms, int most) {
+  auto count = static_cast<int>(std::clamp((time_ms - s.tick_ms(s.tick)) / s.period_ms(), 1.0, static_cast<double>(most)));
+  while (count > 1 && s.tick_ms(s.tick + count) > time_ms) --count;
+  while (count < most && s.tick_ms(s.tick + count + 1) <= time_ms) ++count;
+  return count;
+}
+
 /// Nobody looks at the samples up to the last two before time_ms: only where the motors are then, and how fast, counts.
 std::int64_t tick_before_seen(const Machine::State& s, double time_ms) {
   const bool seen = !s.sinks.empty() || s.gather.enabled() || any_watched(s, s.block_motors);
@@ -51,13 +60,14 @@ RunEnd run_events(Machine::State& s, const RunLimits& limits) {
   s.sample_to(s.now_ms);
   for (std::uint64_t event = 0;; ++event) {
     s.service(s.now_ms);
+    event = run_free(s, std::min(stop_ms, next_progress_ms), event);
     s.update_idle(s.now_ms);
     const double idle_end_ms = s.is_idle && !limits.until_ms ? s.idle_since_ms + limits.idle_ms : kNever;
     if (s.now_ms >= idle_end_ms) return RunEnd::kIdle;
     if (s.now_ms >= stop_ms) return limits.until_ms && *limits.until_ms <= limits.max_ms ? RunEnd::kUntil : RunEnd::kTimeLimit;
     if (s.instructions > s.options.max_instructions) return RunEnd::kBudget;
     if (interruption_wanted()) return RunEnd::kInterrupted;
-    if (limits.over_budget && event % 256 == 0 && limits.over_budget()) return RunEnd::kBudget;
+    if (limits.over_budget && event % kEventsPerLook == 0 && limits.over_budget()) return RunEnd::kBudget;
     if (s.now_ms >= next_progress_ms) {
       if (s.options.observers.progress) s.options.observers.progress(s.now_ms);
       next_progress_ms = s.now_ms + kProgressMs;
@@ -69,10 +79,13 @@ RunEnd run_events(Machine::State& s, const RunLimits& limits) {
 }  // namespace
 
 double Machine::State::next_rti_ms(double time_ms) const {
+  if (time_ms == rti_asked_ms && rti_cycles == rti_asked_cycles) return rti_answer_ms;
   const std::int64_t every = rti_cycles;
   auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
   while (tick_ms(n * every) <= time_ms) ++n;
-  return tick_ms(n * every);
+  rti_asked_ms = time_ms;
+  rti_asked_cycles = rti_cycles;
+  return rti_answer_ms = tick_ms(n * every);
 }
 
 double Machine::State::rti_at_or_after_ms(double time_ms) const {
@@ -113,23 +126,23 @@ double Machine::State::next_event_ms(double limit_ms) {
   return std::max(next, now_ms);
 }
 
-/// Commanded positions of block_motors at count interrupts, into block_rows.
-void Machine::State::command_rows(double start_ms, int count) {
-  const auto n = static_cast<std::size_t>(count);
+/// Commanded positions of block_motors at block_times, into block_rows.
+void Machine::State::command_rows() {
+  const std::size_t n = block_times.size();
   for (std::size_t u = 0; u < block_motors.size(); ++u) {
     const Motor& m = motors[static_cast<std::size_t>(block_motors[u])];
     double* row = block_rows.data() + u * n;
     if (m.source != Motor::Source::kProfile) std::fill_n(row, n, m.position_mu);   // of those on a path what comes below stays
-    else for (std::size_t k = 0; k < n; ++k) row[k] = m.position_at(start_ms + static_cast<double>(k) * period_ms());
+    else std::transform(block_times.begin(), block_times.end(), row, [&m](double t) { return m.position_at(t); });
   }
   for (const auto& c : coords) {
     if (!c->on_path()) continue;
     const std::vector<int>& path_motors = c->path_motors();
     if (path_motors == block_motors) {
-      c->sample(start_ms, period_ms(), count, std::span<double>(block_rows.data(), path_motors.size() * n));
+      c->sample(block_times, std::span<double>(block_rows.data(), path_motors.size() * n));
       continue;
     }
-    c->sample(start_ms, period_ms(), count, std::span<double>(block_path.data(), path_motors.size() * n));
+    c->sample(block_times, std::span<double>(block_path.data(), path_motors.size() * n));
     for (std::size_t i = 0; i < path_motors.size(); ++i) {
       const auto at = static_cast<std::size_t>(std::find(block_motors.begin(), block_motors.end(), path_motors[i]) - block_motors.begin());
       std::copy_n(block_path.begin() + static_cast<std::ptrdiff_t>(i * n), n, block_rows.begin() + static_cast<std::ptrdiff_t>(at * n));
@@ -138,14 +151,15 @@ void Machine::State::command_rows(double start_ms, int count) {
 }
 
 /// The servos follow block_rows; answers how many interrupts count, to which the rows are shortened. actual: block_rows or block_actual.
-int Machine::State::follow_rows(double start_ms, int count, std::vector<double>& actual) {
+int Machine::State::follow_rows(std::vector<double>& actual) {
+  const auto count = static_cast<int>(block_times.size());
   const int reached = run_servos(*this, block_motors, count, block_rows, actual);
   if (reached < count) {
     shorten_rows(block_rows, block_motors.size(), static_cast<std::size_t>(count), static_cast<std::size_t>(reached));
     if (&actual != &block_rows) shorten_rows(actual, block_motors.size(), static_cast<std::size_t>(count), static_cast<std::size_t>(reached));
   }
   for (const auto& c : coords)
-    if (c->on_path()) c->follow_samples(start_ms, period_ms(), reached, count, block_motors, block_rows);
+    if (c->on_path()) c->follow_samples(block_times, reached, block_motors, block_rows);
   return reached;
 }
 
@@ -171,11 +185,10 @@ double Machine::State::sample_to(double time_ms) {
   std::vector<double>& actual = plants ? block_actual : block_rows;
   tick = tick_before_seen(*this, time_ms);
   while (tick_ms(tick + 1) <= time_ms) {
-    int count = 1;
-    while (!single && count < kBlockTicks && tick_ms(tick + 1 + count) <= time_ms) ++count;
-    const double start_ms = tick_ms(tick + 1);
-    command_rows(start_ms, count);
-    const int kept = follow_rows(start_ms, count, actual);
+    block_times.resize(static_cast<std::size_t>(ticks_up_to(*this, time_ms, single ? 1 : kBlockTicks)));
+    for (std::size_t k = 0; k < block_times.size(); ++k) block_times[k] = tick_ms(tick + 1 + static_cast<std::int64_t>(k));
+    command_rows();
+    const int kept = follow_rows(actual);
     const std::size_t values = block_motors.size() * static_cast<std::size_t>(kept);
     const SampleBlock block{tick + 1, period_ms(), kept, block_motors, {block_rows.data(), values}, {actual.data(), values}, block_home};
     tick += kept;
@@ -224,8 +237,12 @@ void Machine::State::scan_plcs(double time_ms) {
 void Machine::State::service(double time_ms) {
   react_to_trips(*this);
   for (Motor& m : motors) service_motor(*this, m);
+  service_from(0, time_ms);
+}
+
+void Machine::State::service_from(int first, double time_ms) {
   programs_execute = true;
-  for (const auto& c : coords) c->service(time_ms);
+  std::for_each(coords.begin() + first, coords.end(), [time_ms](const auto& c) { c->service(time_ms); });
   execute_queued_commands();
   while (!timed.empty() && timed.front().time_ms <= time_ms) {
     const std::string text = timed.front().text;
@@ -246,6 +263,7 @@ RunOutcome Machine::State::run(const RunLimits& limits) {
   } catch (const Interrupted&) {
     outcome.end = RunEnd::kInterrupted;
     broken_off = true;
+    catch_up();
   }
   outcome.time_ms = now_ms;
   outcome.ticks = tick;

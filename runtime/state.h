@@ -97,8 +97,11 @@ struct Machine::State {
   std::map<int, Addresses> command_addresses;        // by sender_key()
   std::vector<SampleSink*> sinks;
   std::vector<int> block_motors;                     // of sample_to(), kept so that a block costs no allocation
+  std::vector<double> block_times;                   // servo ticks of the block
   std::vector<double> block_rows, block_path, block_actual, block_home;
   std::vector<ServoTrip> trips;                      // of the last servo interrupt, until service() has acted on them
+
+  bool runs_free = false;                            // see free_run.h
 
   // bookkeeping
   std::uint64_t instructions = 0;
@@ -115,6 +118,8 @@ struct Machine::State {
   /// Sys.ServoPeriod and Sys.RtIntPeriod, fixed from the first servo interrupt on.
   double servo_period_ms = elements.get(bytecode::ElementId::kSysServoPeriod);
   std::int64_t rti_cycles = 1;
+  mutable double rti_asked_ms = -1, rti_answer_ms = 0;   // the last question of next_rti_ms(), asked several times an event
+  mutable std::int64_t rti_asked_cycles = 0;             // 0: forgotten
   double period_ms() const { return servo_period_ms; }
   double rti_period_ms() const { return servo_period_ms * static_cast<double>(rti_cycles); }
   double tick_ms(std::int64_t k) const { return static_cast<double>(k) * period_ms(); }
@@ -148,15 +153,24 @@ struct Machine::State {
   void request_reset(bool factory);
   void reset_now();
 
+  // free_run.cpp
+  /// For all that looks at motors, or changes what acts next: samples up to now that have been left out are made.
+  void catch_up() {
+    if (runs_free) end_free_run();
+  }
+  void end_free_run();
+
   // schedule.cpp
   RunOutcome run(const RunLimits& limits);
   double next_event_ms(double limit_ms);
   /// Answers the time that has been reached: time_ms, or earlier where a servo has tripped.
   double sample_to(double time_ms);
-  void command_rows(double start_ms, int count);
-  int follow_rows(double start_ms, int count, std::vector<double>& actual);
+  void command_rows();
+  int follow_rows(std::vector<double>& actual);
   void deliver(const SampleBlock& block);
   void service(double time_ms);
+  /// The rest of a service: what coordinate systems from `first` on do, then commands and PLC programs.
+  void service_from(int first, double time_ms);
   void scan_plcs(double time_ms);
   void scan(int plc, double time_ms);
   void finish_scan(int plc, const RunResult& result);

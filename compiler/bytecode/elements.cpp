@@ -62,7 +62,8 @@ std::string without_board(std::string name) {
 
 const ElementInfo& element_info(ElementId id) {
   const auto index = static_cast<std::size_t>(id);
-  return index < kElementCount ? kElements[index] : kNoSuchElement;
+  if (index >= kElementCount) return kNoSuchElement;
+  return kElements[index];
 }
 
 int ElementInfo::index_count() const {

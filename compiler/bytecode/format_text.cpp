@@ -47,7 +47,7 @@ class ConversionReader {
     if (is_one_of(letter, "diuxXoc")) conversion.kind = ConversionKind::kInteger;
     else if (is_one_of(letter, "eEfFgGaA")) conversion.kind = ConversionKind::kNumber;
     else if (letter == 's') conversion.kind = ConversionKind::kText;
-    else if (letter != '%' || letter == '\0') return "a conversion ends with one of d i u x X o c e f g s, and %% prints %";
+    else if (letter != '%') return "a conversion ends with one of d i u x X o c e f g s, and %% prints %";
     conversion.letter = letter;
     conversion.end = at_ + 1;
     return {};

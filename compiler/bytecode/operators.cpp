@@ -56,7 +56,7 @@ double shift_left(double left, double count) {
 double shift_right(double left, double count) {
   const int bits = shift_count(count);
   const std::int64_t value = integer_from(left);
-  return static_cast<double>(value >> (bits == 64 ? 63 : bits));
+  return static_cast<double>(value >> (bits == 64 ? 63 : bits));   // cppcheck-suppress shiftTooManyBitsSigned ; C++20 says what it is
 }
 
 double apply_binary(Opcode op, double left, double right) {

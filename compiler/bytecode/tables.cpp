@@ -118,15 +118,18 @@ int control_argument_count(ControlVerb verb) {
 }
 
 const CardVerbInfo& card_verb_info(CardVerb verb) {
-  return index_of(verb) < kCardVerbs.size() ? kCardVerbs[index_of(verb)] : kUnknownCardVerb;
+  if (index_of(verb) >= kCardVerbs.size()) return kUnknownCardVerb;
+  return kCardVerbs[index_of(verb)];
 }
 
 const OpcodeInfo& opcode_info(Opcode opcode) {
-  return index_of(opcode) < kOpcodeCount ? kOpcodes[index_of(opcode)] : kUnknownOpcode;
+  if (index_of(opcode) >= kOpcodeCount) return kUnknownOpcode;
+  return kOpcodes[index_of(opcode)];
 }
 
 const FunctionInfo& function_info(Function function) {
-  return index_of(function) < kFunctionCount ? kFunctions[index_of(function)] : kUnknownFunction;
+  if (index_of(function) >= kFunctionCount) return kUnknownFunction;
+  return kFunctions[index_of(function)];
 }
 
 }  // namespace pmac::bytecode

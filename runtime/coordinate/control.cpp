@@ -230,10 +230,11 @@ const TimeBase* CoordSystem::clock_for_motion(double time_ms) {
 // --- stopping -------------------------------------------------------------------------------------------------------------
 
 void CoordSystem::abort(double time_ms) {
+  machine_.catch_up();
   if (program_active()) aborted_ = {runner_.thread.top_program(), executing_source(time_ms)};
   std::vector<double> position(path_map_.motors.size()), velocity(path_map_.motors.size());
   if (on_path_) {
-    pipeline_.sample(path_position(time_ms), 1.0, 1, position, velocity);
+    pipeline_.sample(path_position(time_ms), position, velocity);
     if (!pipeline_.end_sequence()) collect_timings();
   }
   report_unfinished(time_ms, false);
@@ -265,6 +266,7 @@ void CoordSystem::drop_program() {
   spline_.cancel();
   forget_retrace();
   pvt_velocity_uu_ms_.fill(0);
+  pvt_goes_on_ = false;
   block_ = {};
   home_motors_.clear();
   shaping_ = Shaping::kNone;

@@ -70,6 +70,7 @@ std::string CoordSystem::define(const bytecode::AxisDefinition& definition, int 
 }
 
 void CoordSystem::fail(double time_ms, Fault fault) {
+  machine_.catch_up();
   const bool ends_on_path = fault.kind == FaultKind::kSoftLimit && on_path_ && lookahead_ && !limit_fault_;
   if (ends_on_path) stop_at_limit(time_ms, std::move(fault));
   else fail_at_once(time_ms, std::move(fault));

@@ -27,6 +27,7 @@
 #include "runtime/motion/cutter_compensation.h"
 #include "runtime/motion/pipeline.h"
 #include "runtime/motion/profile.h"
+#include "runtime/motion/ring.h"
 #include "runtime/motion/spline.h"
 #include "runtime/runner.h"
 
@@ -62,6 +63,7 @@ class CoordSystem {
  public:
   CoordSystem(Machine::State& machine, int number);
   ~CoordSystem();
+  int number() const { return number_; }
 
   // --- set-up -------------------------------------------------------------------------------------------------------
   /// Applies an axis definition to a motor. Answers a refusal, or empty.
@@ -148,11 +150,21 @@ class CoordSystem {
   double next_event_ms() const;
   /// Does everything that is due at time_ms.
   void service(double time_ms);
-  /// Motors that follow the pipeline: row i of position_mu gets count samples from start_ms on.
+  /// Motors that follow the pipeline: row i of position_mu gets the samples at these servo ticks.
   bool on_path() const { return on_path_; }
-  void sample(double start_ms, double period_ms, int count, std::span<double> position_mu);
-  /// The motors have followed the first kept of `count` samples that sample() gave. rows: [motors of used][kept], from home.
-  void follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu);
+  void sample(std::span<const double> time_ms, std::span<double> position_mu);
+  /// The motors have followed the first kept of the samples that sample() gave for these ticks. rows: [motors of used][kept], from home.
+  void follow_samples(std::span<const double> time_ms, int kept, const std::vector<int>& used, std::span<const double> rows_mu);
+
+  // --- a free run (free_run.h) ------------------------------------------------------------------------------------------------
+  /// service() has nothing to do, now or later, until somebody asks for something.
+  bool sleeps() const;
+  /// A program runs along its path, and all that service() will do is to calculate on: nothing that has to know where the motors are.
+  bool runs_along() const;
+  /// While samples are left out up to a last one at time_ms: what is stored of the path is what it would be with them.
+  void pass_samples(double time_ms);
+  /// Positions of at least so many ms behind the place of motion stay known without samples, or none are stored.
+  bool may_pass_samples(double left_out_ms) const;
   const std::vector<int>& path_motors() const { return path_map_.motors; }
   /// The line whose move, dwell or wait executes at the present time.
   bytecode::SourceLine executing_source(double time_ms) const;
@@ -227,7 +239,6 @@ class CoordSystem {
   void calculate(double time_ms);
   void go_on(double time_ms);
   double motors_end_ms() const;
-  void sample_by_clock(double start_ms, double period_ms, int count, std::span<double> position_mu);
   int commands_wanted() const;
   bool enough_ahead(double time_ms) const;
   double next_calculation_ms(double time_ms) const;
@@ -236,22 +247,23 @@ class CoordSystem {
   void settle_path(double time_ms);
   void finish_program();
   Flow end_block(Thread& thread);
+  Flow execute_block(Thread& thread, const OpenBlock& block);
   std::optional<Fault> set_parameter(bytecode::MotionParameter parameter, double value, bytecode::SourceLine source);
   std::optional<Fault> place(motion::MotionCommand& command);
-  std::optional<Fault> compensate(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> compensate(motion::MotionCommand& command, const AxisVector& start_uu);
   std::optional<Fault> flush_compensation();
   std::optional<Fault> add_compensated();
-  std::optional<Fault> add_to_path(motion::MotionCommand command);
+  std::optional<Fault> add_to_path(motion::MotionCommand& command);
   void end_compensation() { compensation_.cancel(); modal.compensation_side = 0; }
-  std::optional<Fault> hand_on(motion::MotionCommand command, const AxisVector& start_uu);
+  std::optional<Fault> hand_on(motion::MotionCommand& command, const AxisVector& start_uu);
   std::optional<Fault> add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu);
   std::optional<Fault> add_spline_moves();
   std::optional<Fault> finish_spline();
   std::optional<Fault> pvt_has_ended(bytecode::SourceLine source) const;
-  bool pvt_goes_on() const;
+  bool pvt_goes_on() const { return pvt_goes_on_; }
   bool pauses_here() const { return (pause_at_rest_ || (stepping_ && !step_block_)) && !pvt_goes_on(); }
   std::optional<Fault> refuse_while_compensating(std::string_view what, bytecode::SourceLine source) const;
-  Flow start_blendable(Thread& thread, motion::MotionCommand command);
+  Flow start_blendable(Thread& thread, motion::MotionCommand& command);
   Flow stop_item(Thread& thread, AfterRest then);
   Flow give_up(Thread& thread, Fault fault);
   void ensure_sequence(double time_ms);
@@ -344,6 +356,7 @@ class CoordSystem {
   motion::StageObservers observers_;
   bool on_path_ = false, lookahead_ = false;
   double sequence_start_ms_ = 0;
+  double history_ms_ = 0;              // programmed time behind motion that stays known, for retracing
   double calculated_at_ms_ = -kNever;  // last calculation pass
   int moves_without_time_ = 0;
   ProgramFrame frame_;
@@ -356,6 +369,7 @@ class CoordSystem {
   motion::Spline spline_;
   std::vector<motion::MotionCommand> spline_moves_;
   AxisVector pvt_velocity_uu_ms_{};   // at the end of the last pvt move, program coordinates
+  bool pvt_goes_on_ = false;          // some of it is not 0
   OpenBlock block_;
   double dwell_ms_ = 0;
   std::vector<int> home_motors_;
@@ -367,11 +381,11 @@ class CoordSystem {
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };
-  std::deque<PendingMove> pending_moves_;
+  motion::Ring<PendingMove> pending_moves_;
   std::vector<motion::MoveTiming> timings_;
   struct ExecutedMove { motion::MoveTiming timing; std::string_view mode; bytecode::SourceLine source; };
-  std::deque<ExecutedMove> executed_;  // planned in full; reported when they end
-  std::vector<double> sample_run_;     // of sample(), kept so that a block costs no allocation
+  motion::Ring<ExecutedMove> executed_;  // planned in full; reported when they end
+  std::vector<double> sample_run_, path_times_ms_;   // of samples, kept so that a block costs no allocation
   std::deque<SyncEntry> sync_;
   std::vector<motion::SyncTime> sync_times_;
   std::deque<motion::SyncTime> due_;   // ascending

@@ -3,6 +3,7 @@
 #include "runtime/coordinate/modal.h"
 #include "compiler/bytecode/element.h"
 
+#include <bit>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -99,8 +100,8 @@ void OpenBlock::add(WordKind kind, int index, double word) {
 AxisVector block_target(const ModalState& modal, const OpenBlock& block, const AxisVector& from_uu, const ElementStore& elements,
                         int coord) {
   AxisVector target = from_uu;
-  for (int axis = 0; axis < bytecode::kAxisCount; ++axis) {
-    if (!(block.axes >> axis & 1u)) continue;
+  for (std::uint32_t left = block.axes; left != 0; left &= left - 1) {
+    const int axis = std::countr_zero(left);
     const bool absolute = modal.absolute_axes >> axis & 1u;
     target[axis] = absolute ? block.value[axis] : from_uu[axis] + block.value[axis];
     if (const int i = rollover_index(axis); absolute && i >= 0)
@@ -111,19 +112,21 @@ AxisVector block_target(const ModalState& modal, const OpenBlock& block, const A
 }
 
 std::optional<Fault> check_block(const ModalState& modal, const OpenBlock& block, bytecode::SourceLine source) {
-  for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
-    if (block.axes >> axis & 1u && !std::isfinite(block.value[axis]))
-      return Fault{FaultKind::kBadTarget, source,
-                   fmt::format("the target of axis {} is {}, not a finite number; check for a division by zero",
-                               bytecode::axis_name(axis), std::isnan(block.value[axis]) ? "nan" : "infinite")};
-  for (int word = 0; word < 6; ++word)
+  for (std::uint32_t left = block.axes; left != 0; left &= left - 1) {
+    const int axis = std::countr_zero(left);
+    if (std::isfinite(block.value[axis])) continue;
+    return Fault{FaultKind::kBadTarget, source,
+                 fmt::format("the target of axis {} is {}, not a finite number; check for a division by zero",
+                             bytecode::axis_name(axis), std::isnan(block.value[axis]) ? "nan" : "infinite")};
+  }
+  for (int word = 0; block.center_words >> word != 0; ++word)
     if (block.center_words >> word & 1u && !std::isfinite(block.center[word]))
       return Fault{FaultKind::kBadTarget, source, "a centre word (I, J, K) is not a finite number"};
   if (block.has_radius && !std::isfinite(block.radius))
     return Fault{FaultKind::kBadTarget, source, "the radius word R is not a finite number"};
   if (block.trigger_axes != 0 && modal.mode != MoveMode::kRapid)
     return Fault{FaultKind::kMoveType, source, "a move until a trigger (X50^-5) outside rapid mode; program rapid before"};
-  for (int axis = 0; axis < bytecode::kAxisCount; ++axis)
+  for (int axis = 0; axis < bytecode::kAxisCount && block.trigger_axes >> axis != 0; ++axis)
     if (block.trigger_axes >> axis & 1u && !std::isfinite(block.trigger[axis]))
       return Fault{FaultKind::kBadTarget, source, fmt::format("the distance of axis {} from its trigger is not a finite number", bytecode::axis_name(axis))};
   if (!is_circle(modal.mode) && (block.center_words != 0 || block.has_radius))

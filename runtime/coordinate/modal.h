@@ -45,6 +45,12 @@ struct OpenBlock {
   double radius = 0;
   bool empty() const { return axes == 0 && center_words == 0 && !has_radius; }
   void add(bytecode::WordKind kind, int index, double word);
+  /// No words; what their masks do not name stays in the arrays.
+  void clear() {
+    axes = trigger_axes = velocity_axes = center_words = 0;
+    has_radius = false;
+    radius = 0;
+  }
 };
 
 /// Absolute end point of the block from the calculated position; axes with a rollover (Coord[].PosRollOver) go the short way.

@@ -34,6 +34,7 @@ void CoordSystem::ensure_sequence(double time_ms) {
   before_mu_.clear();
   forget_retrace();
   sequence_start_ms_ = path_ms;
+  history_ms_ = set_up.history_ms;
   for (int motor : path_map_.motors) machine_.motors[static_cast<std::size_t>(motor)].follow_path();
 }
 
@@ -81,7 +82,7 @@ int CoordSystem::commands_wanted() const {
 bool CoordSystem::enough_ahead(double time_ms) const {
   if (pipeline_.horizon_ms() < time_base_.path_at(machine_.next_rti_ms(time_ms))) return false;
   const double path_ms = time_base_.path_at(time_ms);
-  return lookahead_ ? !pipeline_.wants_more_segments(path_ms) : pipeline_.commands_ahead(path_ms) >= commands_wanted();
+  return lookahead_ ? !pipeline_.wants_more_segments(path_ms) : pipeline_.enough_until_ms(commands_wanted()) > path_ms;
 }
 
 /// The first real-time interrupt at which enough_ahead() may have become false, and before the horizon.
@@ -213,6 +214,7 @@ std::optional<Fault> CoordSystem::come_to_rest(double time_ms, AfterRest then) {
 }
 
 void CoordSystem::at_rest(double time_ms) {
+  machine_.catch_up();
   if (after_rest_ == AfterRest::kLimit) return stopped_at_limit(time_ms);
   settle_path(time_ms);
   switch (after_rest_) {
@@ -247,7 +249,7 @@ void CoordSystem::settle_path(double time_ms) {
   record_executed(time_ms);
   perform_due(time_ms);
   std::vector<double> position(path_map_.motors.size());
-  pipeline_.sample(pipeline_.end_ms(), 1.0, 1, position, {});
+  pipeline_.sample(pipeline_.end_ms(), position, {});
   if (!map_.has_inverse_motors()) (void)motors_from_axes(calculated_uu_, position.data(), {});  // exactly the programmed end
   hold_at_limits(position);
   for (std::size_t i = 0; i < position.size(); ++i)
@@ -290,47 +292,45 @@ void CoordSystem::start_rapid(double time_ms) {
   resume_ms_ = time_ms;
 }
 
-void CoordSystem::sample(double start_ms, double period_ms, int count, std::span<double> position_mu) {
-  if (time_base_.is_real_time()) pipeline_.sample(start_ms, period_ms, count, position_mu, {});
-  else sample_by_clock(start_ms, period_ms, count, position_mu);
+void CoordSystem::sample(std::span<const double> time_ms, std::span<double> position_mu) {
+  if (time_base_.is_real_time()) return pipeline_.sample(time_ms, position_mu, {});
+  path_times_ms_.resize(time_ms.size());
+  std::transform(time_ms.begin(), time_ms.end(), path_times_ms_.begin(), [this](double t) { return path_position(t); });
+  pipeline_.sample(path_times_ms_, position_mu, {});
 }
 
-void CoordSystem::follow_samples(double start_ms, double period_ms, int kept, int count, const std::vector<int>& used, std::span<const double> rows_mu) {
+void CoordSystem::follow_samples(std::span<const double> time_ms, int kept, const std::vector<int>& used, std::span<const double> rows_mu) {
   for (int motor : path_map_.motors) {
     Motor& m = machine_.motors[static_cast<std::size_t>(motor)];
     const auto row = static_cast<std::size_t>(std::find(used.begin(), used.end(), motor) - used.begin());
     const std::size_t last = (row + 1) * static_cast<std::size_t>(kept) - 1;
     const double before_mu = kept > 1 ? rows_mu[last - 1] : m.position_mu;
-    m.velocity_mu_ms = (rows_mu[last] - before_mu) / period_ms;  // as the controller's DesVel: over the last servo cycle
+    m.velocity_mu_ms = (rows_mu[last] - before_mu) / machine_.period_ms();  // as the controller's DesVel: over the last servo cycle
     m.position_mu = rows_mu[last];
   }
-  if (kept == count) return;
+  const auto sampled = static_cast<std::size_t>(kept);
+  if (sampled == time_ms.size()) return;
   sample_run_.resize(path_map_.motors.size());
-  pipeline_.sample(path_position(start_ms + (kept - 1) * period_ms), 1.0, 1, sample_run_, {});  // the pipeline stands there again
+  pipeline_.sample(path_position(time_ms[sampled - 1]), sample_run_, {});  // the pipeline stands there again
 }
+
+bool CoordSystem::sleeps() const { return next_event_ms() == kNever && executed_.empty() && !rapid_open_; }
+
+bool CoordSystem::runs_along() const {
+  return phase_ == Phase::kCalculating && on_path_ && time_base_.is_real_time() && shape_at_ms_ == kNever && !rapid_open_;
+}
+
+void CoordSystem::pass_samples(double time_ms) {
+  if (on_path_ && history_ms_ > 0) pipeline_.pass(time_ms);
+}
+
+bool CoordSystem::may_pass_samples(double left_out_ms) const { return history_ms_ == 0 || history_ms_ > left_out_ms; }
 
 bytecode::SourceLine CoordSystem::executing_source(double time_ms) const {
   const bytecode::SourceLine on_path = on_path_ ? pipeline_.executing_source(path_position(time_ms)) : bytecode::SourceLine{};
   if (on_path.line > 0) return on_path;
   if (phase_ == Phase::kRapid) return rapid_.source;
   return phase_ == Phase::kDwelling || phase_ == Phase::kHoming ? item_source_ : runner_.thread.source();
-}
-
-/// In runs of ticks over which the clock's rate is steady, single ticks while it changes.
-void CoordSystem::sample_by_clock(double start_ms, double period_ms, int count, std::span<double> position_mu) {
-  const std::size_t motors = path_map_.motors.size();
-  for (int done = 0; done < count;) {
-    const double first_ms = start_ms + done * period_ms;
-    const double steady_ms = retracing() ? first_ms : time_base_.steady_until_ms(first_ms);
-    int n = 1;
-    while (done + n < count && first_ms + n * period_ms <= steady_ms) ++n;
-    sample_run_.resize(motors * static_cast<std::size_t>(n));
-    pipeline_.sample(path_position(first_ms), period_ms * time_base_.rate_at(first_ms), n, sample_run_, {});
-    for (std::size_t m = 0; m < motors; ++m)
-      std::copy_n(sample_run_.begin() + static_cast<std::ptrdiff_t>(m) * n, n,
-                  position_mu.begin() + static_cast<std::ptrdiff_t>(m) * count + done);
-    done += n;
-  }
 }
 
 }  // namespace pmac::runtime

@@ -18,7 +18,8 @@ void CoordSystem::collect_timings() {
   pipeline_.take_timings(timings_);
   sync_times_.clear();
   pipeline_.take_sync_times(sync_times_);
-  due_.insert(due_.end(), sync_times_.begin(), sync_times_.end());
+  if (sync_.empty()) due_.clear();
+  else due_.insert(due_.end(), sync_times_.begin(), sync_times_.end());
   for (const motion::MoveTiming& timing : timings_) {
     while (!pending_moves_.empty() && pending_moves_.front().id <= timing.id) {
       const PendingMove& move = pending_moves_.front();
@@ -26,7 +27,6 @@ void CoordSystem::collect_timings() {
       pending_moves_.pop_front();
     }
   }
-  if (sync_.empty()) due_.clear();
 }
 
 void CoordSystem::record_executed(double time_ms) {

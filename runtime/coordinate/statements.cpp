@@ -97,18 +97,24 @@ Flow CoordSystem::give_up(Thread& thread, Fault fault) {
 }
 
 Flow CoordSystem::end_block(Thread& thread) {
-  const OpenBlock block = std::exchange(block_, {});
+  const Flow flow = execute_block(thread, block_);
+  block_.clear();
+  return flow;
+}
+
+Flow CoordSystem::execute_block(Thread& thread, const OpenBlock& block) {
   thread.reset_jump_backs();
-  if (auto fault = check_block(modal, block, thread.source())) return give_up(thread, *fault);
+  const bytecode::SourceLine source = thread.source();
+  if (auto fault = check_block(modal, block, source)) return give_up(thread, *fault);
   if (modal.mode == MoveMode::kRapid) {
-    if (auto fault = refuse_while_compensating("a rapid move", thread.source())) return give_up(thread, *fault);
-    if (auto fault = rapid_move(modal, block, thread.source(), rapid_)) return give_up(thread, *fault);
+    if (auto fault = refuse_while_compensating("a rapid move", source)) return give_up(thread, *fault);
+    if (auto fault = rapid_move(modal, block, source, rapid_)) return give_up(thread, *fault);
     return stop_item(thread, AfterRest::kRapid);
   }
-  motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, thread.source());
+  motion::MotionCommand command = block_command(modal, block, program_uu_, machine_.elements, number_, source);
   if (command.kind == motion::CommandKind::kCircle && machine_.elements.get(ElementId::kCoordSegMoveTime, static_cast<unsigned>(number_)) <= 0)
     machine_.warn(command.source, fmt::format("a circle without segmentation is a straight line; set Coord[{}].SegMoveTime", number_));
-  return start_blendable(thread, std::move(command));
+  return start_blendable(thread, command);
 }
 
 Flow CoordSystem::stop_item(Thread& thread, AfterRest then) {
@@ -135,6 +141,10 @@ Flow CoordSystem::wait_for_interrupt(Thread& thread) { return stop_item(thread, 
 
 /// A command of program coordinates in machine coordinates.
 std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
+  if (frame_.is_plain()) {
+    placed_uu_ = command.target_uu;
+    return std::nullopt;
+  }
   const AxisVector program_end = command.target_uu;
   if (command.kind == motion::CommandKind::kCircle && command.has_radius && frame_.scales_circles(machine_.elements, command))
     machine_.warn(command.source, fmt::format("the matrix Tdata[{}] scales the end point but not R; give the centre with I and J", frame_.transform));
@@ -143,7 +153,7 @@ std::optional<Fault> CoordSystem::place(motion::MotionCommand& command) {
   return std::nullopt;
 }
 
-Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command) {
+Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand& command) {
   const auto cs = static_cast<unsigned>(number_);
   if (const std::string refusal = on_path_ ? std::string() : why_not_ready(false); !refusal.empty())
     return give_up(thread, {FaultKind::kNotReady, thread.source(), refusal});
@@ -156,7 +166,7 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
   const AxisVector start = std::exchange(program_uu_, command.target_uu);
   const bool spline = command.kind == motion::CommandKind::kPvt && command.mode == MoveMode::kSpline;
   next_id_ += spline ? 3 : command.compensation_side != 0 || compensation_.active() ? 2 : 1;  // what is added has the ids between
-  if (auto fault = spline ? add_to_spline(command, start) : hand_on(std::move(command), start)) return give_up(thread, *fault);
+  if (auto fault = spline ? add_to_spline(command, start) : hand_on(command, start)) return give_up(thread, *fault);
   collect_timings();
   if (pauses_here()) return stop_item(thread, AfterRest::kPause);
   if (!enough_ahead(machine_.now_ms)) return Flow::kContinue;
@@ -166,11 +176,15 @@ Flow CoordSystem::start_blendable(Thread& thread, motion::MotionCommand command)
 }
 
 /// A move other than a spline: what waits goes before it.
-std::optional<Fault> CoordSystem::hand_on(motion::MotionCommand command, const AxisVector& start_uu) {
+std::optional<Fault> CoordSystem::hand_on(motion::MotionCommand& command, const AxisVector& start_uu) {
   if (auto fault = finish_spline()) return fault;
-  if (command.kind == motion::CommandKind::kPvt) command.start_velocity_uu_ms = std::exchange(pvt_velocity_uu_ms_, command.end_velocity_uu_ms);
-  else if (auto fault = pvt_has_ended(command.source)) return fault;
-  return compensate(std::move(command), start_uu);
+  if (command.kind == motion::CommandKind::kPvt) {
+    command.start_velocity_uu_ms = std::exchange(pvt_velocity_uu_ms_, command.end_velocity_uu_ms);
+    pvt_goes_on_ = std::any_of(pvt_velocity_uu_ms_.begin(), pvt_velocity_uu_ms_.end(), [](double v) { return v != 0; });
+  } else if (auto fault = pvt_has_ended(command.source)) {
+    return fault;
+  }
+  return compensate(command, start_uu);
 }
 
 std::optional<Fault> CoordSystem::add_to_spline(const motion::MotionCommand& command, const AxisVector& start_uu) {
@@ -190,17 +204,14 @@ std::optional<Fault> CoordSystem::finish_spline() {
 }
 
 std::optional<Fault> CoordSystem::add_spline_moves() {
-  for (const motion::MotionCommand& command : spline_moves_)
+  for (motion::MotionCommand& command : spline_moves_)
     if (auto fault = add_to_path(command)) return fault;
   return std::nullopt;
 }
 
-bool CoordSystem::pvt_goes_on() const {
-  return std::any_of(pvt_velocity_uu_ms_.begin(), pvt_velocity_uu_ms_.end(), [](double v) { return v != 0; });
-}
-
 /// A pvt move that does not end at rest needs another one after it.
 std::optional<Fault> CoordSystem::pvt_has_ended(bytecode::SourceLine source) const {
+  if (!pvt_goes_on_) return std::nullopt;
   for (std::size_t axis = 0; axis < pvt_velocity_uu_ms_.size(); ++axis)
     if (pvt_velocity_uu_ms_[axis] != 0)
       return Fault{FaultKind::kPvt, source, fmt::format("the last pvt move leaves axis {} moving; end it with velocity 0, as in {}10:0",
@@ -209,7 +220,8 @@ std::optional<Fault> CoordSystem::pvt_has_ended(bytecode::SourceLine source) con
 }
 
 /// The command, or what compensation makes of it and of those before, goes on its way.
-std::optional<Fault> CoordSystem::compensate(motion::MotionCommand command, const AxisVector& start_uu) {
+std::optional<Fault> CoordSystem::compensate(motion::MotionCommand& command, const AxisVector& start_uu) {
+  if (command.compensation_side == 0 && !compensation_.active()) return add_to_path(command);
   const auto cs = static_cast<unsigned>(number_);
   const ElementStore& e = machine_.elements;
   if (command.compensation_side != 0 && e.get(ElementId::kCoordSegMoveTime, cs) <= 0 && !compensation_.active()) {
@@ -234,11 +246,11 @@ std::optional<Fault> CoordSystem::flush_compensation() {
 
 std::optional<Fault> CoordSystem::add_compensated() {
   for (motion::MotionCommand& command : compensated_)
-    if (auto fault = add_to_path(std::move(command))) return fault;
+    if (auto fault = add_to_path(command)) return fault;
   return std::nullopt;
 }
 
-std::optional<Fault> CoordSystem::add_to_path(motion::MotionCommand command) {
+std::optional<Fault> CoordSystem::add_to_path(motion::MotionCommand& command) {
   if (auto fault = place(command)) return fault;
   if (auto fault = check_targets(command.target_uu, command.source)) return fault;
   auto fault = pipeline_.add(command);

@@ -238,7 +238,9 @@ std::optional<Fault> transform_command(const Transform& transform, const AxisVec
 }
 
 bool ProgramFrame::is_plain() const {
-  return transform < 0 && std::all_of(position_bias_uu.begin(), position_bias_uu.end(), [](double bias) { return bias == 0; });
+  bool biased = false;   // all are looked at, side by side
+  for (const double bias : position_bias_uu) biased |= bias != 0;
+  return transform < 0 && !biased;
 }
 
 Transform ProgramFrame::map(const ElementStore& elements) const {

@@ -29,8 +29,7 @@ using TemporaryFile = std::unique_ptr<std::FILE, CloseFile>;
 TemporaryFile temporary_file_with(const std::string& text) {
   TemporaryFile file(std::tmpfile());
   if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) fail_to_start();
-  std::fflush(file.get());
-  std::rewind(file.get());
+  if (std::fflush(file.get()) != 0 || std::fseek(file.get(), 0, SEEK_SET) != 0) fail_to_start();
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -108,8 +109,32 @@ void OutputFile::write(std::string_view text) {
 
 void OutputFile::patch(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
   flush();
-  const ::ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<::off_t>(offset));
-  if (written != static_cast<::ssize_t>(bytes.size())) fail("write");
+  while (!bytes.empty()) {
+    const ::ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<::off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+}
+
+void OutputFile::move_down(std::uint64_t from, std::uint64_t to, std::uint64_t size) {
+  flush();
+  while (size > 0 && from != to) {
+    const ::ssize_t count = ::pread(descriptor_, buffer_.data(), std::min<std::uint64_t>(size, buffer_.size()), static_cast<::off_t>(from));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) fail("read");
+    patch(to, {buffer_.data(), static_cast<std::size_t>(count)});
+    from += static_cast<std::uint64_t>(count);
+    to += static_cast<std::uint64_t>(count);
+    size -= static_cast<std::uint64_t>(count);
+  }
+}
+
+void OutputFile::end_at(std::uint64_t offset) {
+  flush();
+  if (::ftruncate(descriptor_, static_cast<::off_t>(offset)) != 0 || ::lseek(descriptor_, static_cast<::off_t>(offset), SEEK_SET) < 0) fail("write");
+  flushed_ = offset;
 }
 
 void OutputFile::commit() {

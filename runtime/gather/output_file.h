@@ -37,8 +37,12 @@ class OutputFile {
 
   /// Bytes written so far.
   std::uint64_t size() const { return flushed_ + used_; }
-  /// Overwrites bytes written earlier. Not for devices and pipes.
+  /// Writes bytes to a place, before or beyond the end. Not for devices and pipes.
   void patch(std::uint64_t offset, std::span<const std::uint8_t> bytes);
+  /// Bytes written earlier, also to another place of the file (to <= from). As above.
+  void move_down(std::uint64_t from, std::uint64_t to, std::uint64_t size);
+  /// The file ends here: what lies beyond is dropped, and write() goes on from here. As above.
+  void end_at(std::uint64_t offset);
   bool is_seekable() const { return !temporary_.empty(); }
 
   /// Writes what is buffered and gives the file its name. Throws OutputError; then nothing keeps the name.

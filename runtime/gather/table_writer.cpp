@@ -60,6 +60,22 @@ class TextTableWriter : public TableWriter {
 
 }  // namespace
 
+void interleave(std::span<const std::span<const double>> columns, std::vector<double>& rows) {
+  const std::size_t width = columns.size(), count = columns.empty() ? 0 : columns[0].size();
+  rows.resize(width * count);
+  for (std::size_t column = 0; column < width; ++column) {
+    const double* from = columns[column].data();
+    double* to = rows.data() + column;
+    for (std::size_t row = 0; row < count; ++row) to[row * width] = from[row];
+  }
+}
+
+void TableWriter::append_columns(std::span<const std::span<const double>> columns) {
+  std::vector<double> rows;
+  interleave(columns, rows);
+  append(rows);
+}
+
 std::optional<TableFormat> table_format_of(std::string_view path) {
   std::string ending(path.size() < 4 ? path : path.substr(path.size() - 4));
   for (char& ch : ending) ch = static_cast<char>(std::tolower(static_cast<unsigned char>(ch)));
@@ -69,10 +85,10 @@ std::optional<TableFormat> table_format_of(std::string_view path) {
   return std::nullopt;
 }
 
-std::unique_ptr<TableWriter> make_table_writer(TableFormat format, const std::string& path,
-                                               std::vector<std::string> columns) {
+std::unique_ptr<TableWriter> make_table_writer(TableFormat format, const std::string& path, std::vector<std::string> columns,
+                                               std::uint64_t known_rows) {
   if (columns.empty()) throw std::invalid_argument("a table needs columns");
-  if (format == TableFormat::kNpz) return make_npz_writer(path, std::move(columns));
+  if (format == TableFormat::kNpz) return make_npz_writer(path, std::move(columns), known_rows);
   const bool is_csv = format == TableFormat::kCsv;
   return std::make_unique<TextTableWriter>(path, columns.size(), is_csv ? ',' : ' ',
                                            is_csv ? csv_header(columns) : std::string());

@@ -22,7 +22,7 @@ Knot smoothed(const MotorNode& previous, const MotorNode& node, const MotorNode&
 
 class BsplineFit : public NodeFit {
  public:
-  void add(MotorNode node, std::vector<Segment>& out) override {
+  void add(MotorNode& node, std::vector<Segment>& out) override {
     nodes_.push_back(std::move(node));
     if (nodes_.size() == 1) knot_ = at_rest(nodes_[0]);
     if (nodes_.size() == 4) emit_inner(out);
@@ -48,7 +48,7 @@ class BsplineFit : public NodeFit {
     before_ms_ = b;
   }
   void emit(const MotorNode& from, const MotorNode& to, Knot end, std::vector<Segment>& out) {
-    out.push_back(hermite_segment(from, to, knot_.value, knot_.slope, end.value, end.slope));
+    add_hermite_segment(from, to, knot_.value, knot_.slope, end.value, end.slope, out);
     knot_ = std::move(end);
   }
 

@@ -7,9 +7,6 @@
 namespace pmac::motion {
 namespace {
 
-/// A parameter this near to an end is the end: sums of ramp integrals miss it by rounding.
-constexpr double kRounding = 1e-14;
-
 void add_arc(const Curve& curve, double u, CurvePoint& point) {
   const double angle = u * curve.sweep_rad;
   const double c = std::cos(angle), s = std::sin(angle);
@@ -51,19 +48,57 @@ Curve pvt_curve(const AxisVector& start, const AxisVector& end, const EndRates& 
   return curve;
 }
 
-Curve line(const AxisVector& start, const AxisVector& end) {
-  Curve curve;
+void set_line(Curve& curve, const AxisVector& start, const AxisVector& end, std::uint32_t axes) {
   curve.start = start;
   curve.end = end;
-  for (std::size_t axis = 0; axis < start.size(); ++axis) {
+  curve.delta.fill(0);
+  curve.moved = 0;
+  curve.is_arc = false;
+  curve.rates.reset();
+  for (std::vector<double>* of_motors : {&curve.motor_start_rate_mu, &curve.motor_end_rate_mu, &curve.motor_start_mu, &curve.motor_delta_mu}) of_motors->clear();
+  for_each_axis(axes, [&](std::size_t axis) {
     curve.delta[axis] = end[axis] - start[axis];
     if (curve.delta[axis] != 0) curve.moved |= 1u << axis;
-  }
+  });
+}
+
+Curve line(const AxisVector& start, const AxisVector& end) {
+  Curve curve;
+  set_line(curve, start, end, ~0u);
   return curve;
 }
 
+/// Curves that nobody has, for one thread.
+class CurveRef::Memory {
+ public:
+  ~Memory() {
+    while (first_) delete std::exchange(first_, first_->next);
+  }
+  Shared* take() { return first_ ? std::exchange(first_, first_->next) : new Shared; }
+  void give_back(Shared* shared) {
+    shared->next = first_;
+    first_ = shared;
+  }
+  static Memory& here() {
+    thread_local Memory memory;
+    return memory;
+  }
+
+ private:
+  Shared* first_ = nullptr;
+};
+
+CurveRef CurveRef::make() {
+  CurveRef curve;
+  curve.shared_ = Memory::here().take();
+  curve.shared_->users = 1;
+  return curve;
+}
+
+void CurveRef::give_back() { Memory::here().give_back(shared_); }
+
 void evaluate(const Curve& curve, double exact_u, CurvePoint& point) {
-  const double u = std::abs(exact_u - 1) < kRounding ? 1 : std::abs(exact_u) < kRounding ? 0 : exact_u;
+  const double u = exact_end(exact_u);
   point.position = u < 0.5 ? curve.start : curve.end;
   if (curve.rates) return evaluate_cubic(curve, u, point);
   const AxisVector& base = point.position;

@@ -8,7 +8,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "runtime/motion/types.h"
 
@@ -33,7 +36,37 @@ struct Curve {
   double radius = 0, radius_change = 0, sweep_rad = 0;
 };
 
-/// A straight line; `moved` are the axes that differ.
+/// A curve that parts of the path share. Its memory comes from curves that have been dropped before. For one thread at a time.
+class CurveRef {
+ public:
+  CurveRef() = default;
+  CurveRef(const CurveRef& other) : shared_(other.shared_) { if (shared_) ++shared_->users; }
+  CurveRef(CurveRef&& other) noexcept : shared_(std::exchange(other.shared_, nullptr)) {}
+  CurveRef& operator=(CurveRef other) noexcept {
+    std::swap(shared_, other.shared_);
+    return *this;
+  }
+  ~CurveRef() { if (shared_ && --shared_->users == 0) give_back(); }
+  /// A curve to be filled in, by set_line() to begin with.
+  static CurveRef make();
+  /// As long as nobody else has it.
+  Curve& fill() { return shared_->curve; }
+
+  const Curve& operator*() const { return shared_->curve; }
+  const Curve* operator->() const { return &shared_->curve; }
+  explicit operator bool() const { return shared_ != nullptr; }
+  bool operator==(const CurveRef& other) const { return shared_ == other.shared_; }
+
+ private:
+  struct Shared { Curve curve; int users = 0; Shared* next = nullptr; };
+  class Memory;
+  void give_back();
+
+  Shared* shared_ = nullptr;
+};
+
+/// Replaces `curve` by a straight line; `moved` are the axes that differ, all of them among `axes`.
+void set_line(Curve& curve, const AxisVector& start, const AxisVector& end, std::uint32_t axes);
 Curve line(const AxisVector& start, const AxisVector& end);
 
 /// The cubic with these derivatives (uu per u) at its ends.
@@ -45,6 +78,12 @@ std::array<double, 3> cubic_coefficients(double delta, double start_rate, double
 /// Position and derivatives with respect to u. Derivatives are written for moved axes only; the others keep what they were.
 struct CurvePoint { AxisVector position, d1, d2; };
 void evaluate(const Curve& curve, double u, CurvePoint& point);
+
+/// A parameter that misses 0 or 1 by rounding is 0 or 1: sums of ramp integrals do.
+inline double exact_end(double u) {
+  constexpr double kRounding = 1e-14;
+  return std::abs(u - 1) < kRounding ? 1 : std::abs(u) < kRounding ? 0 : u;
+}
 
 /// First derivative with respect to u at u, of every axis.
 AxisVector derivative(const Curve& curve, double u);

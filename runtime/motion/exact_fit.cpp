@@ -4,27 +4,32 @@
 
 namespace pmac::motion {
 
-Segment hermite_segment(const MotorNode& from, const MotorNode& to, const Row<double>& p0, const Row<double>& v0,
-                        const Row<double>& p1, const Row<double>& v1) {
-  Segment segment{to.command, to.source, from.time_ms, to.time_ms - from.time_ms, {}};
+void add_hermite_segment(const MotorNode& from, const MotorNode& to, const Row<double>& p0, const Row<double>& v0, const Row<double>& p1,
+                         const Row<double>& v1, std::vector<Segment>& out) {
+  Segment& segment = out.emplace_back();
+  segment.command = to.command;
+  segment.source = to.source;
+  segment.start_ms = from.time_ms;
+  segment.duration_ms = to.time_ms - from.time_ms;
+  segment.passed_ms = to.passed_ms;
   segment.motor.resize(p0.size());
   for (std::size_t m = 0; m < p0.size(); ++m) segment.motor[m] = hermite_cubic(p0[m], v0[m], p1[m], v1[m], segment.duration_ms);
-  return segment;
 }
 
 namespace {
 
 class ExactFit : public NodeFit {
  public:
-  void add(MotorNode node, std::vector<Segment>& out) override {
-    if (last_) out.push_back(hermite_segment(*last_, node, last_->position_mu, last_->after.velocity_mu_ms, node.position_mu,
-                                             node.before.velocity_mu_ms));
-    last_ = std::move(node);
+  void add(MotorNode& node, std::vector<Segment>& out) override {
+    if (is_open_) add_hermite_segment(last_, node, last_.position_mu, last_.after.velocity_mu_ms, node.position_mu, node.before.velocity_mu_ms, out);
+    std::swap(last_, node);
+    is_open_ = true;
   }
-  void finish(std::vector<Segment>&) override { last_.reset(); }
+  void finish(std::vector<Segment>&) override { is_open_ = false; }
 
  private:
-  std::optional<MotorNode> last_;
+  MotorNode last_;
+  bool is_open_ = false;
 };
 
 }  // namespace

@@ -15,16 +15,29 @@ constexpr double kSameSpeedTolerance = 1e-12;
 /// Room that is short by rounding only is room.
 constexpr double kRoomTolerance = 1e-9;
 
+/// Velocities on both sides, of the axes that move and of the next one's circle axes; the others are not filled in.
 struct Corner {
-  AxisVector before{}, after{};
+  AxisVector before, after;
   double speed_before, speed_after;
 };
 
-Corner corner_between(const Move& previous, const Move& next) {
-  Corner corner{end_velocity(previous, 1), end_velocity(next, 0), 0, 0};
-  corner.speed_before = norm(corner.before, previous.curve->moved);
-  corner.speed_after = norm(corner.after, next.curve->moved);
-  return corner;
+/// Velocity at an end of the move's curve (u 0 or 1), of the axes of the mask. Returns the speed.
+double fill_velocity(const Move& move, double u, std::uint32_t axes, AxisVector& velocity) {
+  const Curve& curve = *move.curve;
+  const double scale = move.time_ms;
+  if (curve.is_arc || curve.rates) {
+    const AxisVector rate = derivative(curve, u);
+    for_each_axis(axes, [&](std::size_t axis) { velocity[axis] = rate[axis] == 0 ? 0 : rate[axis] / scale; });
+  } else {
+    for_each_axis(axes, [&](std::size_t axis) { velocity[axis] = curve.delta[axis] == 0 ? 0 : curve.delta[axis] / scale; });
+  }
+  return norm(velocity, curve.moved);
+}
+
+void fill_corner(const Move& previous, const Move& next, Corner& corner) {
+  const std::uint32_t axes = previous.curve->moved | next.curve->moved | 7u << (next.second_set ? kAxisXX : kAxisX);
+  corner.speed_before = fill_velocity(previous, 1, axes, corner.before);
+  corner.speed_after = fill_velocity(next, 0, axes, corner.after);
 }
 
 double speed_change(const Corner& corner, std::uint32_t axes) {
@@ -120,7 +133,8 @@ double room_in(const Move& next) {
 Join decide_join(const Move& previous, const Move& next, double entry_total_ms, const PipelineConfig& config) {
   if (previous.pvt && next.pvt) return {JoinKind::kSteady, {}, 0, 0, 0};  // given velocities, the same on both sides
   if (previous.pvt || next.pvt) return {};
-  const Corner corner = corner_between(previous, next);
+  Corner corner;
+  fill_corner(previous, next, corner);
   const std::uint32_t axes = previous.curve->moved | next.curve->moved;
   if (corner_is_too_sharp(corner, next, config.corner_dwell_bp)) {
     Join stop;

@@ -10,14 +10,15 @@
 //      +---------------------- s
 //       committed | window
 //
-// Where the path's velocity steps, velocity_steps.h has said what to do. Where the program itself rests, x is free. Method: Pham and Pham, "A new approach to time-optimal path parameterization based on
-// reachability analysis" (2018).
+// Where motors run straight at a constant programmed speed x may rise, stay and fall within one segment, however long that is. Where the
+// path's velocity steps, velocity_steps.h has said what to do. Where the program itself rests, x is free. Method: Pham and Pham, "A new
+// approach to time-optimal path parameterization based on reachability analysis" (2018).
 #pragma once
 
 #include <vector>
 
-#include "runtime/motion/rate_limits.h"
 #include "runtime/motion/ring.h"
+#include "runtime/motion/segment_division.h"
 #include "runtime/motion/time_law.h"
 #include "runtime/motion/velocity_steps.h"
 
@@ -27,7 +28,8 @@ class Lookahead : public TimeLaw {
  public:
   /// limits: [motor]. window_ms: programmed time that is always known beyond what is committed (LHDistance * SegMoveTime; in
   /// time, because nodes at corners and in arcs make some segments shorter).
-  Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms);
+  /// shortest_part_ms: executed time to which a segment is divided at most where the limits hold it back.
+  Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms, double shortest_part_ms = 1);
 
   void add(Segment segment, std::vector<TimedSegment>& out) override;
   void finish(std::vector<TimedSegment>& out) override;
@@ -37,36 +39,53 @@ class Lookahead : public TimeLaw {
   double window_ms() const override { return window_ms_; }
 
  private:
-  struct Interval {
+  /// A segment of which parts are still to be committed.
+  struct Whole {
     Segment segment;
     double accel_share = 1;
-    RateLimits limits;
+    int parts = 0;              // not yet committed
+  };
+  /// A part of a segment, as far as planning needs it: its motion is made of the segment when it is committed.
+  struct Interval {
+    std::uint64_t whole = 0;    // its segment, counted from the first
+    Stretch stretch{0, 0};      // of its segment
     double speed_ratio2 = 1;    // x at the end of the interval before is this times x at its start
     double start_bound = 1;     // of x at its start: limits of both neighbours, 0 where motion has to stop
     double beta = 0;            // of x at its start
     bool may_be_divided = false;
+    RateLimits limits;
   };
+  struct Start { double speed_ratio, max_rate; bool stops; };   // of a segment
   int known() const { return static_cast<int>(intervals_.size()); }
+  Whole& whole_of(const Interval& interval) { return wholes_[interval.whole - first_whole_]; }
+  const Whole& whole_of(const Interval& interval) const { return wholes_[interval.whole - first_whole_]; }
   void append(PreparedSegment prepared);
-  void append_part(PreparedSegment prepared, RateLimits limits, bool may_be_divided);
+  void append_interval(const Stretch& stretch, const RateLimits* limits, const Start& start, bool may_be_divided);
+  void find_limits(Interval& interval) const;
+  void find_parts_of(const Interval& interval);
   void divide_interval(const Interval& whole, std::vector<Interval>& parts);
   bool is_slowed(int i, double end_beta) const;
   void plan(double end_beta);
   void divide_first(double end_beta);
-  void push(Interval interval);
   void rest(Segment segment, std::vector<TimedSegment>& out);
   void end_path(std::vector<TimedSegment>& out);
   void split_last();
   void backward(double end_beta);
   void commit_first(double end_beta, std::vector<TimedSegment>& out);
-  bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
+  void emit(const Interval& interval, double x0, double x1, bool may_switch, std::vector<TimedSegment>& out);
+  void emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
+  bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out);
+  void emit_part(const Interval& interval, const Stretch& stretch, double x0, double x1, std::vector<TimedSegment>& out) const;
 
   std::vector<MotorLimits> limits_;
-  double window_ms_, chunk_ms_;
+  double window_ms_, chunk_ms_, shortest_part_ms_;
   VelocitySteps steps_;
   std::vector<PreparedSegment> prepared_;
   std::vector<double> part_ends_ms_;
+  Ring<Whole> wholes_;
+  std::uint64_t first_whole_ = 0;
   Ring<Interval> intervals_;
+  RateLimits first_limits_, second_limits_;   // of the parts that emit_with_switch() tries
   std::vector<Interval> taken_out_;
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass

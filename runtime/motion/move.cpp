@@ -15,7 +15,6 @@ constexpr int kMaxSegmentsOfMove = 1'000'000;  // a move is segmented as a whole
 
 using runtime::Fault;
 using runtime::FaultKind;
-using runtime::Result;
 
 bool is_finite(const AxisVector& vector, std::uint32_t axes) {
   bool finite = true;
@@ -31,12 +30,18 @@ std::optional<Fault> check(const MotionCommand& command) {
   if (!(command.feed_time_ms > 0)) return refuse("Coord[].FeedTime must be positive");
   if (!is_valid({command.ta_ms, command.ts_ms}) || !is_valid({command.td_ms, command.tsd_ms}))
     return refuse("ts must be a rate (negative) or 0 where ta is a rate");
-  if (!is_finite(command.end_velocity_uu_ms, ~0u)) return refuse("the velocity is not a finite number");
+  if (command.kind == CommandKind::kPvt && !is_finite(command.end_velocity_uu_ms, ~0u)) return refuse("the velocity is not a finite number");
   for (const double value : command.center_uu)
     if (!std::isfinite(value)) return refuse("the centre vector is not a finite number");
   if (!std::isfinite(command.radius_uu)) return refuse("the radius is not a finite number");
   return std::nullopt;
 }
+
+/// What feed rate and times are made from.
+struct Way {
+  const Curve& curve;
+  double arc_length_uu, min_radius_uu;   // of an arc
+};
 
 AxisVector end_point(const MotionCommand& command, const AxisVector& start) {
   AxisVector end = start;
@@ -54,29 +59,29 @@ double longest(const Curve& curve, std::uint32_t axes) {
 std::uint32_t circle_axes_of(const Curve& curve) { return curve.is_arc ? 7u << curve.first_axis : 0; }
 
 /// Length over the feed-rate axes; the three axes of an arc always count, with the arc in place of its chord.
-double feed_length(const Arc& arc, const MotionCommand& command) {
-  const Curve& curve = arc.curve;
-  return std::hypot(arc.length_uu, norm(curve.delta, (command.feed_axes | circle_axes_of(curve)) & curve.moved));
+double feed_length(const Way& way, const MotionCommand& command) {
+  const double straight = norm(way.curve.delta, (command.feed_axes | circle_axes_of(way.curve)) & way.curve.moved);
+  return way.arc_length_uu == 0 ? straight : std::hypot(way.arc_length_uu, straight);
 }
 
 /// Feed rate in effect, uu per feed time: clipped by MaxFeedRate, and on an arc by MaxCirAccel (v^2/R).
-double feed_in_effect(const MotionCommand& command, const Arc& arc, double length_uu, const PipelineConfig& config) {
+double feed_in_effect(const MotionCommand& command, const Way& way, double length_uu, const PipelineConfig& config) {
   double feed = command.feed_uu;
   if (config.max_feed_uu > 0) feed = std::min(feed, config.max_feed_uu);
-  if (config.max_circle_accel > 0 && arc.curve.is_arc)
-    feed = std::min(feed, std::sqrt(config.max_circle_accel * arc.min_radius_uu) * length_uu / arc.length_uu);
+  if (config.max_circle_accel > 0 && way.curve.is_arc)
+    feed = std::min(feed, std::sqrt(config.max_circle_accel * way.min_radius_uu) * length_uu / way.arc_length_uu);
   return feed;
 }
 
 /// TM before the short-move rule.
-double programmed_time_ms(const MotionCommand& command, const Arc& arc, double length_uu, const PipelineConfig& config) {
+double programmed_time_ms(const MotionCommand& command, const Way& way, double length_uu, const PipelineConfig& config) {
   if (command.kind == CommandKind::kDelay) return std::max(command.move_time_ms, config.segment_time_ms);
   if (command.feed_uu == 0) return command.move_time_ms;
   if (command.inverse_time) return command.feed_time_ms / command.feed_uu;
-  const std::uint32_t circle_axes = circle_axes_of(arc.curve);
-  const double other = longest(arc.curve, ~(command.feed_axes | command.feed_axes2 | circle_axes));
-  const double second_uu = norm(arc.curve.delta, command.feed_axes2 & ~circle_axes & arc.curve.moved);
-  const double feed = feed_in_effect(command, arc, length_uu, config);
+  const std::uint32_t circle_axes = circle_axes_of(way.curve);
+  const double other = longest(way.curve, ~(command.feed_axes | command.feed_axes2 | circle_axes));
+  const double second_uu = norm(way.curve.delta, command.feed_axes2 & ~circle_axes & way.curve.moved);
+  const double feed = feed_in_effect(command, way, length_uu, config);
   double time_ms = std::max(length_uu, second_uu) / feed * command.feed_time_ms;
   if (command.alt_feed_uu > 0) time_ms = std::max(time_ms, other / command.alt_feed_uu * command.feed_time_ms);
   if (command.alt_feed_uu <= 0 && time_ms == 0) time_ms = other / feed * command.feed_time_ms;
@@ -84,12 +89,12 @@ double programmed_time_ms(const MotionCommand& command, const Arc& arc, double l
 }
 
 /// What made programmed_time_ms() what it is.
-TimeRule rule_of(const MotionCommand& command, const Arc& arc, double length_uu, double time_ms, const PipelineConfig& config) {
+TimeRule rule_of(const MotionCommand& command, const Way& way, double length_uu, double time_ms, const PipelineConfig& config) {
   if (command.kind == CommandKind::kDelay) return time_ms > command.move_time_ms ? TimeRule::kSegment : TimeRule::kOwnTime;
   if (command.feed_uu == 0) return TimeRule::kMoveTime;
   if (command.inverse_time) return TimeRule::kInverseTime;
-  const double feed = feed_in_effect(command, arc, length_uu, config);
-  const double second_uu = norm(arc.curve.delta, command.feed_axes2 & ~circle_axes_of(arc.curve) & arc.curve.moved);
+  const double feed = feed_in_effect(command, way, length_uu, config);
+  const double second_uu = norm(way.curve.delta, command.feed_axes2 & ~circle_axes_of(way.curve) & way.curve.moved);
   const bool by_feed = time_ms <= std::max(length_uu, second_uu) / feed * command.feed_time_ms;
   if (!by_feed) return command.alt_feed_uu > 0 ? TimeRule::kAltFeedRate : TimeRule::kFeed;
   if (second_uu > length_uu) return TimeRule::kSecondFeedAxes;
@@ -123,9 +128,9 @@ double time_with_room_for_ramps(const Move& move, double time_ms, const Pipeline
   const auto ramps = [&](double time) {
     return (own_ramp(move, time, false, config).total_ms() + own_ramp(move, time, true, config).total_ms()) / 2;
   };
-  const double shortest = std::max(time_ms, 1e-9);
-  if (ramps(shortest) <= shortest) return ramps(shortest) == 0 ? time_ms : shortest;
-  double low = shortest, high = ramps(shortest);
+  const double shortest = std::max(time_ms, 1e-9), room = ramps(shortest);
+  if (room <= shortest) return room == 0 ? time_ms : shortest;
+  double low = shortest, high = room;
   if (ramps(high) == high) return high;  // ramps given as times
   for (int i = 0; i < 100 && high - low > 1e-14 * high; ++i) {
     const double middle = (low + high) / 2;
@@ -153,11 +158,20 @@ std::optional<Fault> too_long(const Move& move, SourceLine source, const Pipelin
   return std::nullopt;
 }
 
-Result<Arc> make_geometry(const MotionCommand& command, const AxisVector& start, const PipelineConfig& config) {
-  const AxisVector end = command.kind == CommandKind::kDelay ? start : end_point(command, start);
+struct ArcSize { double length_uu = 0, min_radius_uu = 0; };
+
+/// Fills in the curve and, of an arc, its length and radius.
+std::optional<Fault> make_geometry(const MotionCommand& command, const AxisVector& start, const PipelineConfig& config, Curve& curve, ArcSize& size) {
   const bool as_line = command.kind != CommandKind::kCircle || config.segment_time_ms <= 0;
-  if (as_line) return Arc{line(start, end), 0, 0};
-  return make_arc(command, start, end, config);
+  if (command.kind == CommandKind::kDelay) set_line(curve, start, start, 0);
+  else if (as_line) set_line(curve, start, end_point(command, start), command.axes);
+  if (as_line) return std::nullopt;
+  auto made = make_arc(command, start, end_point(command, start), config);
+  if (Fault* fault = std::get_if<Fault>(&made)) return std::move(*fault);
+  const Arc& arc = std::get<Arc>(made);
+  curve = arc.curve;
+  size = {arc.length_uu, arc.min_radius_uu};
+  return std::nullopt;
 }
 
 void take_words(Move& move, const MotionCommand& command) {
@@ -166,6 +180,7 @@ void take_words(Move& move, const MotionCommand& command) {
   move.entry = {command.ta_ms, command.ts_ms};
   move.exit = {command.td_ms, command.tsd_ms};
   move.no_blend = command.no_blend;
+  move.pvt = false;
   move.normal = command.normal;
   move.second_set = command.second_set;
 }
@@ -183,8 +198,8 @@ std::optional<Fault> map_rates(Curve& curve, const MotionCommand& command, const
   return map(curve.end, command.end_velocity_uu_ms, curve.motor_end_rate_mu);
 }
 
-Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
-                           const MoveContext& context) {
+std::optional<Fault> make_pvt_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
+                                   const MoveContext& context, Move& move) {
   const double time_ms = command.move_time_ms;
   if (!(time_ms > 0)) return Fault{FaultKind::kPvt, command.source, "the time of a pvt or spline move must be above 0"};
   EndRates rates;
@@ -193,9 +208,8 @@ Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start
     rates.end[axis] = command.end_velocity_uu_ms[axis] * time_ms;
   }
   Curve curve = pvt_curve(start, end_point(command, start), rates);
-  if (auto fault = map_ends(curve, start_motor_mu, command.source, context)) return *fault;
-  if (auto fault = map_rates(curve, command, context)) return *fault;
-  Move move;
+  if (auto fault = map_ends(curve, start_motor_mu, command.source, context)) return fault;
+  if (auto fault = map_rates(curve, command, context)) return fault;
   take_words(move, command);
   move.entry = move.exit = {0, 0};
   move.no_blend = false;
@@ -203,9 +217,9 @@ Result<Move> make_pvt_move(const MotionCommand& command, const AxisVector& start
   move.rule = TimeRule::kOwnTime;
   move.time_ms = time_ms;
   move.length_uu = norm(curve.delta, command.feed_axes & curve.moved);
-  move.curve = std::make_shared<const Curve>(std::move(curve));
-  if (auto fault = too_long(move, command.source, context.config)) return *fault;
-  return move;
+  move.curve = CurveRef::make();
+  move.curve.fill() = std::move(curve);
+  return too_long(move, command.source, context.config);
 }
 
 }  // namespace
@@ -225,37 +239,31 @@ Ramp start_ramp(const Move& move, const PipelineConfig& config) {
   return move.pvt ? Ramp{} : own_ramp(move, move.time_ms, false, config);
 }
 
-AxisVector end_velocity(const Move& move, double u) {
-  AxisVector velocity = derivative(*move.curve, u);
-  for_each_axis(move.curve->moved, [&](std::size_t axis) { velocity[axis] /= move.time_ms; });
-  return velocity;
-}
-
-Result<Move> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
-                       const MoveContext& context) {
-  if (auto fault = check(command)) return *fault;
-  if (command.kind == CommandKind::kPvt) return make_pvt_move(command, start, start_motor_mu, context);
-  Result<Arc> geometry = make_geometry(command, start, context.config);
-  if (Fault* fault = std::get_if<Fault>(&geometry)) return *fault;
-  Arc& arc = std::get<Arc>(geometry);
-  if (auto fault = map_ends(arc.curve, start_motor_mu, command.source, context)) return *fault;
-  Move move;
+std::optional<Fault> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
+                               const MoveContext& context, Move& move) {
+  if (auto fault = check(command)) return fault;
+  if (command.kind == CommandKind::kPvt) return make_pvt_move(command, start, start_motor_mu, context, move);
+  move.curve = CurveRef::make();
+  Curve& curve = move.curve.fill();
+  ArcSize arc;
+  if (auto fault = make_geometry(command, start, context.config, curve, arc)) return fault;
+  if (auto fault = map_ends(curve, start_motor_mu, command.source, context)) return fault;
   take_words(move, command);
-  move.curve = std::make_shared<const Curve>(arc.curve);
-  move.length_uu = command.kind == CommandKind::kDelay ? 0 : feed_length(arc, command);
-  const double programmed_ms = programmed_time_ms(command, arc, move.length_uu, context.config);
-  move.rule = rule_of(command, arc, move.length_uu, programmed_ms, context.config);
-  if (move.length_uu == 0) move.length_uu = longest(arc.curve, ~0u);
+  const Way way{curve, arc.length_uu, arc.min_radius_uu};
+  move.length_uu = command.kind == CommandKind::kDelay ? 0 : feed_length(way, command);
+  const double programmed_ms = programmed_time_ms(command, way, move.length_uu, context.config);
+  move.rule = rule_of(command, way, move.length_uu, programmed_ms, context.config);
+  if (move.length_uu == 0) move.length_uu = longest(curve, ~0u);
   move.time_ms = std::max(programmed_ms, time_for_max_speed_ms(move, context.config));
   if (move.time_ms > programmed_ms) move.rule = TimeRule::kMotorSpeed;
   const double without_ramps_ms = move.time_ms;
   move.time_ms = time_with_room_for_ramps(move, move.time_ms, context.config);
   if (move.time_ms > without_ramps_ms) move.rule = TimeRule::kRamps;
-  if (auto fault = too_long(move, command.source, context.config)) return *fault;
-  if (move.time_ms == 0 && move.curve->moved != 0)
+  if (auto fault = too_long(move, command.source, context.config)) return fault;
+  if (move.time_ms == 0 && curve.moved != 0)
     return Fault{FaultKind::kBadTarget, command.source, "the move takes no time; set tm, ta or a feed rate"};
   move.stop_ramp = own_ramp(move, move.time_ms, true, context.config);
-  return move;
+  return std::nullopt;
 }
 
 }  // namespace pmac::motion

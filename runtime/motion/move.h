@@ -2,7 +2,6 @@
 // p722-729 (move time, limits of unsegmented moves), Turbo Software Reference F, FRAX, Isx13.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "runtime/motion/curve.h"
@@ -14,7 +13,7 @@ namespace pmac::motion {
 struct Move {
   std::uint64_t id = 0;
   SourceLine source;
-  std::shared_ptr<const Curve> curve;
+  CurveRef curve;
   double time_ms = 0;                   // TM: at constant speed, after all rules
   double length_uu = 0;                 // over the axes that counted for the feed rate
   TimeRule rule = TimeRule::kFeed;      // what time_ms comes from
@@ -32,9 +31,9 @@ struct MoveContext {
   const MotorKinematics& kinematics;
 };
 
-/// The command from `start` as a Move. Faults are the command's own: target, feed rate, circle, kinematics (unsegmented).
-runtime::Result<Move> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
-                                const MoveContext& context);
+/// Makes `move` the command from `start`. Faults are the command's own: target, feed rate, circle, kinematics (unsegmented).
+std::optional<runtime::Fault> make_move(const MotionCommand& command, const AxisVector& start, const std::vector<double>& start_motor_mu,
+                                        const MoveContext& context, Move& move);
 
 /// The ramp of a change of velocity by speed_change_uu_ms (vector speed) and motor_change_mu_ms ([motor], signed; may be
 /// empty): as set, and unsegmented as long as the motors need it. stops: InvDmax counts instead of InvAmax.
@@ -43,8 +42,5 @@ Ramp ramp_within_limits(const RampSetting& setting, double speed_change_uu_ms, c
 
 /// From rest into this move.
 Ramp start_ramp(const Move& move, const PipelineConfig& config);
-
-/// Velocity of all axes at the end of a curve (u 0 or 1) when it is run through at constant speed, uu/ms.
-AxisVector end_velocity(const Move& move, double u);
 
 }  // namespace pmac::motion

@@ -24,6 +24,7 @@ struct MotorNode {
   SourceLine source;
   Row<double> position_mu;
   NodeSide before, after;
+  double passed_ms = 0;                 // see Segment
   bool step = false;                    // the velocity steps here: the sides are not to be made equal
 };
 
@@ -31,7 +32,8 @@ class NodeFit {
  public:
   virtual ~NodeFit() = default;
   /// The next node of a chain; the first one opens it. Appends the segments that are now decided.
-  virtual void add(MotorNode node, std::vector<Segment>& out) = 0;
+  /// What stands in `node` afterwards is of no meaning.
+  virtual void add(MotorNode& node, std::vector<Segment>& out) = 0;
   /// The chain has come to rest at its last node.
   virtual void finish(std::vector<Segment>& out) = 0;
 };
@@ -43,8 +45,8 @@ std::unique_ptr<NodeFit> make_stencil_fit();
 /// Smoothing cubic B-spline with the nodes as control points; at rest exactly on the first and the last node.
 std::unique_ptr<NodeFit> make_bspline_fit();
 
-/// Segment between two nodes with these end positions and velocities ([motor]).
-Segment hermite_segment(const MotorNode& from, const MotorNode& to, const Row<double>& p0, const Row<double>& v0,
-                        const Row<double>& p1, const Row<double>& v1);
+/// Appends the segment between two nodes with these end positions and velocities ([motor]).
+void add_hermite_segment(const MotorNode& from, const MotorNode& to, const Row<double>& p0, const Row<double>& v0, const Row<double>& p1,
+                         const Row<double>& v1, std::vector<Segment>& out);
 
 }  // namespace pmac::motion

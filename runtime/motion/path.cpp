@@ -29,7 +29,37 @@ void add_velocity(const PathPart& part, double d, const CurvePoint& at, std::uin
 
 }  // namespace
 
+namespace {
+
+bool is_line(const Curve& curve) { return !curve.is_arc && !curve.rates; }
+
+/// take(axis, position, velocity) for the axes of the mask.
+template <class Take>
+void for_each_on_line(const PathPart& part, double d, std::uint32_t axes, const Take& take) {
+  const Curve& curve = *part.curve;
+  const double u = exact_end(parameter(part, d)), rate = parameter_rate(part, d), offset = u < 0.5 ? u : u - 1;  // exact at both ends
+  const AxisVector& base = u < 0.5 ? curve.start : curve.end;
+  for_each_axis(axes, [&](std::size_t axis) { take(axis, base[axis] + offset * curve.delta[axis], curve.delta[axis] * rate); });
+}
+
+/// Lines alone, and their corners.
+void evaluate_lines(const PathPiece& piece, double time_ms, std::uint32_t axes, PathMotion& motion) {
+  for_each_on_line(piece.part[0], time_ms, axes, [&](std::size_t axis, double position, double velocity) {
+    motion.position[axis] = position;
+    motion.velocity[axis] = velocity;
+  });
+  if (piece.part_count < 2) return;
+  const Curve& next = *piece.part[1].curve;
+  for_each_on_line(piece.part[1], time_ms, next.moved & axes, [&](std::size_t axis, double position, double velocity) {
+    motion.position[axis] += position - next.start[axis];
+    motion.velocity[axis] += velocity;
+  });
+}
+
+}  // namespace
+
 void evaluate(const PathPiece& piece, double time_ms, std::uint32_t axes, PathMotion& motion) {
+  if (is_line(*piece.part[0].curve) && (piece.part_count < 2 || is_line(*piece.part[1].curve))) return evaluate_lines(piece, time_ms, axes, motion);
   CurvePoint at;  // read for moved axes only
   evaluate(*piece.part[0].curve, parameter(piece.part[0], time_ms), at);
   for_each_axis(axes, [&](std::size_t axis) {

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
 
 #include "runtime/motion/curve.h"
 
@@ -15,7 +14,7 @@ namespace pmac::motion {
 
 /// A curve with its parameter as a cubic of the time since the start of the piece: u(d) = u[0] + u[1] d + u[2] d^2 + u[3] d^3.
 struct PathPart {
-  std::shared_ptr<const Curve> curve;
+  CurveRef curve;
   std::array<double, 4> u{};
 };
 

@@ -20,10 +20,12 @@ namespace {
 using runtime::Fault;
 
 constexpr double kShortestSegment_ms = 1e-6;
+/// The lookahead need not divide time finer than this part of a segment, or 1 ms.
+constexpr double kPartsOfSegment = 0.2;
 
 /// Unsegmented pvt: the cubic in u of each motor, u = u0 + rate * time.
 Segment pvt_segment(const PathPiece& piece) {
-  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
+  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, 0, {}};
   const Curve& curve = *piece.part[0].curve;
   const double u = piece.part[0].u[0], rate = piece.part[0].u[1];
   for (std::size_t m = 0; m < curve.motor_start_mu.size(); ++m) {
@@ -41,7 +43,7 @@ Segment pvt_segment(const PathPiece& piece) {
 /// Unsegmented: lines only, so that a motor is a cubic of time: start + delta * u(t), two of them superposed at a corner.
 Segment motor_segment(const PathPiece& piece) {
   if (piece.part[0].curve->rates) return pvt_segment(piece);
-  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, {}};
+  Segment segment{piece.command, piece.source, piece.start_ms, piece.duration_ms, 0, {}};
   segment.motor.resize(piece.part[0].curve->motor_start_mu.size());
   for (int i = 0; i < piece.part_count; ++i) {
     const PathPart& part = piece.part[static_cast<std::size_t>(i)];
@@ -55,6 +57,19 @@ Segment motor_segment(const PathPiece& piece) {
     }
   }
   return segment;
+}
+
+/// The segments that one stands for.
+void show_each(const Segment& segment, double step_ms, const std::function<void(const Segment&)>& show) {
+  if (segment.passed_ms == 0) return show(segment);
+  double from_ms = 0;
+  const double end_ms = segment.duration_ms, first_ms = segment.passed_ms - segment.start_ms;
+  for (int i = 0; first_ms + i * step_ms < end_ms - kShortestSegment_ms; ++i) {
+    const double to_ms = first_ms + i * step_ms;
+    show(part_of(segment, from_ms, to_ms - from_ms));
+    from_ms = to_ms;
+  }
+  show(part_of(segment, from_ms, end_ms - from_ms));
 }
 
 }  // namespace
@@ -73,6 +88,7 @@ struct Pipeline::State {
   double earliest_ms = 0;               // start of the next sequence
   double sequence_ms = 0;               // start of this one
   bool in_sequence = false;
+  Move next;                            // being added
   PlannerOutput planned;
   std::vector<Segment> segments;
   std::vector<TimedSegment> timed;
@@ -97,7 +113,7 @@ void Pipeline::State::build_stages() {
   if (segmented() && config.lookahead) {
     const double window_ms = config.lookahead_segments * config.segment_time_ms;
     if (config.limit_jerk) lookahead = std::make_unique<JerkLookahead>(config.limits, window_ms, config.servo_period_ms);
-    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms);
+    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms, std::min(1.0, kPartsOfSegment * config.segment_time_ms));
   }
 }
 
@@ -170,14 +186,18 @@ std::optional<Fault> Pipeline::State::end_at_limit() {
 }
 
 void Pipeline::State::to_times(bool ends) {
-  if (observers.segment) std::for_each(segments.begin(), segments.end(), observers.segment);
+  if (observers.segment)
+    for (const Segment& segment : segments) show_each(segment, config.segment_time_ms, observers.segment);
   for (Segment& segment : segments) {
     if (lookahead) {
       lookahead->add(std::move(segment), timed);
       continue;
     }
     const double start_ms = sequence_ms + segment.start_ms, duration_ms = segment.duration_ms;
-    timed.push_back({std::move(segment), start_ms, duration_ms, 1, 0});
+    TimedSegment& next_timed = timed.emplace_back();
+    next_timed.segment = std::move(segment);
+    next_timed.start_ms = start_ms;
+    next_timed.duration_ms = duration_ms;
   }
   segments.clear();
   if (ends && lookahead) lookahead->finish(timed);
@@ -219,12 +239,11 @@ void Pipeline::observe(StageObservers observers) { state_->observers = std::move
 std::optional<Fault> Pipeline::add(const MotionCommand& command) {
   State& s = *state_;
   if (s.fault) return s.fault;
-  auto move = make_move(command, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics});
-  if (Fault* problem = std::get_if<Fault>(&move)) return std::move(*problem);
+  if (auto problem = make_move(command, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics}, s.next)) return problem;
   s.timeline.prune();
   s.timings.prune(s.timeline.sampled_ms());
   s.start_sequence();
-  s.planner.add(std::move(std::get<Move>(move)), s.config, s.planned);
+  s.planner.add(s.next, s.config, s.planned);
   return s.run_stages(false);
 }
 
@@ -266,9 +285,11 @@ double Pipeline::horizon_ms() const {
 
 double Pipeline::end_ms() const { return state_->timeline.end_ms(); }
 
-void Pipeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
-  state_->timeline.sample(start_ms, period_ms, count, position_mu, velocity_mu_ms);
+void Pipeline::sample(std::span<const double> time_ms, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
+  state_->timeline.sample(time_ms, position_mu, velocity_mu_ms);
 }
+
+void Pipeline::pass(double time_ms) { state_->timeline.pass(time_ms); }
 
 void Pipeline::peek(double time_ms, std::span<double> position_mu) const { state_->timeline.peek(time_ms, position_mu); }
 

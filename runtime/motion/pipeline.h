@@ -71,9 +71,13 @@ class Pipeline {
   /// End of the motion that has been ended; the time at which the motors come to rest. Valid after end_sequence().
   double end_ms() const;
 
-  /// Motor positions at times start_ms + k * period_ms, k = 0 .. count-1, all from oldest_ms() to horizon_ms().
-  /// position_mu: [motor][count], motor order of the map. velocity_mu_ms: same shape, or empty. Does not allocate.
-  void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
+  /// Motor positions at these times, all from oldest_ms() to horizon_ms(); fastest where they ascend. Each is that of its time alone,
+  /// whatever the others. position_mu: [motor][time], motor order of the map. velocity_mu_ms: same shape, or empty. Does not allocate.
+  void sample(std::span<const double> time_ms, std::span<double> position_mu, std::span<double> velocity_mu_ms);
+  /// The same at one time.
+  void sample(double time_ms, std::span<double> position_mu, std::span<double> velocity_mu_ms) { sample({&time_ms, 1}, position_mu, velocity_mu_ms); }
+  /// Goes on as if it had been sampled at time_ms; what is known behind it by the history of the set-up can still be sampled.
+  void pass(double time_ms);
 
   /// The same at one time, out of the way of sample().
   void peek(double time_ms, std::span<double> position_mu) const;

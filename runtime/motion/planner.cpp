@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/motion/axis_vector.h"
 
 namespace pmac::motion {
 namespace {
@@ -66,39 +67,44 @@ void Planner::reset(const AxisVector& start_uu, std::vector<double> start_motor_
   motor_position_ = std::move(start_motor_mu);
 }
 
-void Planner::add(Move move, const PipelineConfig& config, PlannerOutput& out) {
-  position_ = move.curve->end;
+void Planner::add(Move& move, const PipelineConfig& config, PlannerOutput& out) {
+  for_each_axis(move.curve->moved, [&](std::size_t axis) { position_[axis] = move.curve->end[axis]; });
   for (std::size_t motor = 0; motor < move.curve->motor_delta_mu.size(); ++motor) motor_position_[motor] += move.curve->motor_delta_mu[motor];
-  if (!pending_) clock_ms_ = 0;
+  if (!has_pending_) clock_ms_ = 0;
   if (move.time_ms == 0) return pass_over(move, out);
-  if (!pending_) return begin(std::move(move), config, out);
-  const Join join = decide_join(*pending_, move, entry_total_ms_, config);
+  if (!has_pending_) return begin(move, config, out);
+  const Join join = decide_join(pending_, move, entry_total_ms_, config);
   if (join.kind == JoinKind::kStop) {
     stop(out);
     if (join.dwell_ms > 0) wait(move, join.dwell_ms, out);
-    return begin(std::move(move), config, out);
+    return begin(move, config, out);
   }
   const double boundary_ms = nominal_end_ms();
-  out.ends.push_back({pending_->id, boundary_ms});
+  out.ends.push_back({pending_.id, boundary_ms});
   out.begins.push_back({move.id, move.source, boundary_ms - join.ramp.total_ms() / 2, boundary_ms, move.length_uu, move.rule});
   blend(join, move, out);
   nominal_start_ms_ = boundary_ms;
   entry_total_ms_ = join.ramp.total_ms();
-  pending_ = std::move(move);
+  hold_back(move);
+}
+
+void Planner::hold_back(Move& move) {
+  std::swap(pending_, move);
+  has_pending_ = true;
 }
 
 void Planner::end_sequence(PlannerOutput& out) {
-  if (pending_) stop(out);
+  if (has_pending_) stop(out);
 }
 
 /// A move without length and time leaves no trace but its timing.
 void Planner::pass_over(const Move& move, PlannerOutput& out) {
-  const double time_ms = pending_ ? nominal_end_ms() : clock_ms_;
+  const double time_ms = has_pending_ ? nominal_end_ms() : clock_ms_;
   out.begins.push_back({move.id, move.source, time_ms, time_ms, 0, move.rule});
   out.ends.push_back({move.id, time_ms});
 }
 
-void Planner::begin(Move move, const PipelineConfig& config, PlannerOutput& out) {
+void Planner::begin(Move& move, const PipelineConfig& config, PlannerOutput& out) {
   const Ramp ramp = start_ramp(move, config);
   const double start_ms = clock_ms_;
   out.begins.push_back({move.id, move.source, start_ms, start_ms, move.length_uu, move.rule});
@@ -112,21 +118,21 @@ void Planner::begin(Move move, const PipelineConfig& config, PlannerOutput& out)
   clock_ms_ = start_ms + ramp.total_ms();
   nominal_start_ms_ = start_ms + ramp.total_ms() / 2;
   entry_total_ms_ = ramp.total_ms();
-  pending_ = std::move(move);
+  hold_back(move);
 }
 
 void Planner::stop(PlannerOutput& out) {
-  const Ramp& ramp = pending_->stop_ramp;
+  const Ramp& ramp = pending_.stop_ramp;
   const double start_ms = nominal_end_ms() - ramp.total_ms() / 2;
   cruise_until(start_ms, out);
   const RampParts parts = ramp_parts(ramp);
   for (int i = 0; i < parts.count; ++i) {
     const RampPart& part = parts.part[static_cast<std::size_t>(i)];
-    emit(*pending_, start_ms + part.start_ms, part.duration_ms, {exit_part(*pending_, part, ramp.total_ms())}, out);
+    emit(pending_, start_ms + part.start_ms, part.duration_ms, {exit_part(pending_, part, ramp.total_ms())}, out);
   }
   clock_ms_ = nominal_end_ms() + ramp.total_ms() / 2;
-  out.ends.push_back({pending_->id, clock_ms_});
-  pending_.reset();
+  out.ends.push_back({pending_.id, clock_ms_});
+  has_pending_ = false;
 }
 
 /// Rest at the start of the move to come.
@@ -137,9 +143,9 @@ void Planner::wait(const Move& next, double duration_ms, PlannerOutput& out) {
 }
 
 void Planner::cruise_until(double time_ms, PlannerOutput& out) {
-  const double scale = 1 / pending_->time_ms;
-  emit(*pending_, clock_ms_, time_ms - clock_ms_,
-       {PathPart{pending_->curve, {(clock_ms_ - nominal_start_ms_) * scale, scale, 0, 0}}}, out);
+  const double scale = 1 / pending_.time_ms;
+  emit(pending_, clock_ms_, time_ms - clock_ms_,
+       {PathPart{pending_.curve, {(clock_ms_ - nominal_start_ms_) * scale, scale, 0, 0}}}, out);
   clock_ms_ = time_ms;
 }
 
@@ -164,7 +170,7 @@ void Planner::blend_along_path(const Join& join, const Move& next, PlannerOutput
     const std::array<double, 4> distance = distance_from_join(join, part);
     const double crossing_ms = zero_of_rising(distance, part.duration_ms);
     const double start_ms = clock_ms_ + part.start_ms;
-    emit(*pending_, start_ms, crossing_ms, {along(*pending_, distance, 1, join.speed_before)}, out);
+    emit(pending_, start_ms, crossing_ms, {along(pending_, distance, 1, join.speed_before)}, out);
     emit(next, start_ms + crossing_ms, part.duration_ms - crossing_ms,
          {along(next, shifted(distance, crossing_ms), 0, join.speed_after)}, out);
   }
@@ -175,14 +181,14 @@ void Planner::blend_corner(const Join& join, const Move& next, PlannerOutput& ou
   for (int i = 0; i < parts.count; ++i) {
     const RampPart& part = parts.part[static_cast<std::size_t>(i)];
     emit(next, clock_ms_ + part.start_ms, part.duration_ms,
-         {exit_part(*pending_, part, join.ramp.total_ms()), entry_part(next, part)}, out);
+         {exit_part(pending_, part, join.ramp.total_ms()), entry_part(next, part)}, out);
   }
 }
 
 void Planner::emit(const Move& owner, double start_ms, double duration_ms, std::initializer_list<PathPart> parts,
                    PlannerOutput& out) {
   if (duration_ms <= kNoTime_ms) return;
-  PathPiece piece;
+  PathPiece& piece = out.pieces.emplace_back();
   piece.command = owner.id;
   piece.source = owner.source;
   piece.start_ms = start_ms;
@@ -191,7 +197,6 @@ void Planner::emit(const Move& owner, double start_ms, double duration_ms, std::
   std::copy(parts.begin(), parts.end(), piece.part.begin());
   piece.starts_at_rest = std::exchange(rest_before_, false);
   piece.step_at_start = std::exchange(step_before_, false);
-  out.pieces.push_back(std::move(piece));
 }
 
 }  // namespace pmac::motion

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <initializer_list>
-#include <optional>
 #include <vector>
 
 #include "runtime/motion/join.h"
@@ -41,18 +40,19 @@ class Planner {
   void reset(const AxisVector& start_uu, std::vector<double> start_motor_mu);
 
   /// The next move: appends what is now decided of the move before, and its own beginning.
-  void add(Move move, const PipelineConfig& config, PlannerOutput& out);
+  /// What stands in `move` afterwards is of no meaning.
+  void add(Move& move, const PipelineConfig& config, PlannerOutput& out);
   /// The move held back comes to rest.
   void end_sequence(PlannerOutput& out);
 
-  bool at_rest() const { return !pending_; }
+  bool at_rest() const { return !has_pending_; }
   const AxisVector& position() const { return position_; }
   const std::vector<double>& motor_position() const { return motor_position_; }
   /// Programmed time at which the sequence ended, from its start. Valid at rest.
   double end_ms() const { return clock_ms_; }
 
  private:
-  void begin(Move move, const PipelineConfig& config, PlannerOutput& out);
+  void begin(Move& move, const PipelineConfig& config, PlannerOutput& out);
   void stop(PlannerOutput& out);
   void wait(const Move& next, double duration_ms, PlannerOutput& out);
   void pass_over(const Move& move, PlannerOutput& out);
@@ -61,9 +61,11 @@ class Planner {
   void blend_corner(const Join& join, const Move& next, PlannerOutput& out);
   void cruise_until(double time_ms, PlannerOutput& out);
   void emit(const Move& owner, double start_ms, double duration_ms, std::initializer_list<PathPart> parts, PlannerOutput& out);
-  double nominal_end_ms() const { return nominal_start_ms_ + pending_->time_ms; }
+  double nominal_end_ms() const { return nominal_start_ms_ + pending_.time_ms; }
+  void hold_back(Move& move);
 
-  std::optional<Move> pending_;
+  Move pending_;
+  bool has_pending_ = false;
   double nominal_start_ms_ = 0;   // of pending_
   double entry_total_ms_ = 0;     // length of the ramp or blend into pending_
   double clock_ms_ = 0;           // pieces are complete up to here

@@ -26,6 +26,12 @@ class Ring {
     ++count_;
     back() = std::move(value);
   }
+  /// A new last one, with whatever its place held before.
+  T& extend() {
+    if (count_ == slots_.size()) grow();
+    ++count_;
+    return back();
+  }
   void push_front(T value) {
     if (count_ == slots_.size()) grow();
     first_ = (first_ + slots_.size() - 1) & mask();

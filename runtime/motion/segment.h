@@ -1,6 +1,8 @@
 // Hops 7 and 8: the path in motor space as cubics of programmed time, and the same with the times at which it is executed.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "runtime/motion/row.h"
@@ -27,16 +29,26 @@ struct Segment {
   SourceLine source;
   double start_ms = 0;              // programmed time since the start of the sequence
   double duration_ms = 0;
+  double passed_ms = 0;             // > 0: a straight line through several nodes; programmed time of the first one inside
   Row<MotorCubic> motor;            // [motor], order of the map
 };
 
-/// Part of a segment from `from` on, `duration` long.
-inline Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
-  Segment part = segment;
-  part.start_ms += from_ms;
+/// Part of a segment from `from` on, `duration` long; replaces what stands in `part`.
+inline void take_part(const Segment& segment, double from_ms, double duration_ms, Segment& part) {
+  part.command = segment.command;
+  part.source = segment.source;
+  part.start_ms = segment.start_ms + from_ms;
   part.duration_ms = duration_ms;
+  part.passed_ms = 0;
+  part.motor = segment.motor;
+  if (from_ms == 0) return;
   for (MotorCubic& q : part.motor)
     q = {q.position(from_ms), q.velocity(from_ms), q.c2 + 3 * q.c3 * from_ms, q.c3};
+}
+
+inline Segment part_of(const Segment& segment, double from_ms, double duration_ms) {
+  Segment part;
+  take_part(segment, from_ms, duration_ms, part);
   return part;
 }
 
@@ -51,5 +63,12 @@ struct TimedSegment {
   double jerk_step = 0;             // --limit-jerk: the jerk that a step of acceleration at the start makes at servo rate, in limits; 0: none
   double programmed_ms(double t) const { return t * (rate + t * rate_slope / 2); }
 };
+
+/// Time since the start of the segment at which d of its programmed time has passed.
+inline double time_at(const TimedSegment& segment, double d) {
+  const double end_rate2 = segment.rate * segment.rate + 2 * segment.rate_slope * d;
+  const double rates = segment.rate + std::sqrt(std::max(0.0, end_rate2));
+  return rates > 0 ? 2 * d / rates : 0;
+}
 
 }  // namespace pmac::motion

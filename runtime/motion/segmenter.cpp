@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/interruption.h"
 
@@ -30,6 +31,14 @@ bool same_stretch(const PathPiece& a, const PathPiece& b) {
          (a.part_count == 1 || a.part[1].curve == b.part[1].curve);
 }
 
+/// Longest segment on a straight line at constant speed. Time-optimal lookahead with limits for all motors divides it itself where it has to.
+double longest_line_ms(const PipelineConfig& config, const MotorKinematics& kinematics) {
+  constexpr int kSegments = 16;
+  const bool all_limited = !config.limits.empty() && std::all_of(config.limits.begin(), config.limits.end(), [](const MotorLimits& l) { return l.inv_amax_ms2_mu > 0; });
+  if (!config.lookahead || config.limit_jerk || !kinematics.is_linear() || !all_limited) return 0;
+  return std::min(kSegments, config.lookahead_segments / 8) * config.segment_time_ms;
+}
+
 std::unique_ptr<NodeFit> make_fit(const PipelineConfig& config, const MotorKinematics& kinematics) {
   if (config.fine == FineInterpolation::kBspline) return make_bspline_fit();
   return kinematics.is_linear() ? make_exact_fit() : make_stencil_fit();
@@ -38,38 +47,40 @@ std::unique_ptr<NodeFit> make_fit(const PipelineConfig& config, const MotorKinem
 }  // namespace
 
 Segmenter::Segmenter(const PipelineConfig& config, const MotorKinematics& kinematics)
-    : config_(config), kinematics_(kinematics), fit_(make_fit(config, kinematics)), uniform_(config.fine == FineInterpolation::kBspline) {}
+    : config_(config), kinematics_(kinematics), fit_(make_fit(config, kinematics)), uniform_(config.fine == FineInterpolation::kBspline),
+      longest_ms_(longest_line_ms(config, kinematics)) {}
 
 std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>& out) {
-  if (open_ && (piece.starts_at_rest || piece.step_at_start))
+  if (is_open_ && (piece.starts_at_rest || piece.step_at_start))
     if (auto fault = close_gap(out)) return fault;
-  if (open_ && piece.starts_at_rest)
+  if (is_open_ && piece.starts_at_rest)
     if (auto fault = finish(out)) return fault;
-  if (!open_)
+  if (!is_open_)
     if (auto fault = start_chain(piece)) return fault;
   enter_piece(piece);
   place_nodes(piece);
-  for (const double local_ms : local_times_)
-    if (auto fault = add_node(piece, local_ms, out)) return fault;
-  end_is_open_ = open_->time_ms != piece.start_ms + piece.duration_ms;
+  for (const Place& place : places_)
+    if (auto fault = add_node(piece, place, out)) return fault;
+  end_is_open_ = open_.time_ms != piece.start_ms + piece.duration_ms;
   previous_ = piece;
+  has_previous_ = true;
   return std::nullopt;
 }
 
 std::optional<Fault> Segmenter::finish(std::vector<Segment>& out) {
-  if (!open_) return std::nullopt;
+  if (!is_open_) return std::nullopt;
   if (auto fault = close_gap(out)) return fault;
-  fit_->add(std::move(*open_), out);
+  fit_->add(open_, out);
   fit_->finish(out);
-  open_.reset();
-  previous_.reset();
+  is_open_ = has_previous_ = false;
   return std::nullopt;
 }
 
 /// First node of a chain.
 std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
-  MotorNode node;
+  MotorNode& node = open_;
   node.time_ms = piece.start_ms;
+  node.passed_ms = 0;
   node.command = piece.command;
   node.source = piece.source;
   node.position_mu.resize(kinematics_.count());
@@ -82,7 +93,7 @@ std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
   fill_side(node.before, piece, 0, point);
   node.before.stretch = 0;
   node.before.z_rate = 0;
-  open_ = std::move(node);
+  is_open_ = true;
   origin_ms_ = piece.start_ms;
   next_grid_ = 1;
   end_is_open_ = false;
@@ -91,19 +102,19 @@ std::optional<Fault> Segmenter::start_chain(const PathPiece& piece) {
 
 /// The far side of the open node is the beginning of this piece.
 void Segmenter::enter_piece(const PathPiece& piece) {
-  if (previous_ && !same_stretch(*previous_, piece)) {
+  if (has_previous_ && !same_stretch(previous_, piece)) {
     ++stretch_;
     stretch_start_ms_ = piece.start_ms;
   }
-  const bool is_new_side = !previous_ || piece.step_at_start || !kinematics_.is_linear();
-  const double local_ms = open_->time_ms - piece.start_ms;
+  const bool is_new_side = !has_previous_ || piece.step_at_start || !kinematics_.is_linear();
+  const double local_ms = open_.time_ms - piece.start_ms;
   if (is_new_side) {
     PathMotion point;
     evaluate(piece, local_ms, kinematics_.axes(), point);
-    fill_side(open_->after, piece, local_ms, point);
+    fill_side(open_.after, piece, local_ms, point);
   }
-  if (!is_new_side) open_->after = open_->before;
-  open_->step = open_->step || piece.step_at_start;
+  if (!is_new_side) open_.after = open_.before;
+  open_.step = open_.step || piece.step_at_start;
 }
 
 /// point: the path at local_ms.
@@ -117,34 +128,54 @@ void Segmenter::fill_side(NodeSide& side, const PathPiece& piece, double local_m
   kinematics_.rate(point.velocity, side.velocity_mu_ms.data());
 }
 
-/// Fills local_times_ with the nodes of this piece, without the one at its start.
+/// On this piece the motors run straight at constant speed, and segments may be longer than the segment time.
+bool Segmenter::passes_nodes(const PathPiece& piece) const {
+  const PathPart& part = piece.part[0];
+  return longest_ms_ > config_.segment_time_ms && piece.part_count == 1 && part.curve->moved != 0 && !part.curve->is_arc && !part.curve->rates && part.u[2] == 0 && part.u[3] == 0;
+}
+
+/// Fills places_ with the nodes of this piece, without the one at its start.
 void Segmenter::place_nodes(const PathPiece& piece) {
-  local_times_.clear();
+  places_.clear();
+  const bool passes = passes_nodes(piece);
+  double passed_ms = 0;
   const double step_ms = config_.segment_time_ms;
   const double end_ms = piece.start_ms + piece.duration_ms;
   for (;;) {
     const double time_ms = origin_ms_ + static_cast<double>(next_grid_) * step_ms;
     if (time_ms > end_ms + (uniform_ ? 0 : -kMinGap_ms)) break;
     ++next_grid_;
-    if (time_ms < open_->time_ms + kMinGap_ms && !uniform_) continue;
+    if (time_ms < open_.time_ms + kMinGap_ms && !uniform_) continue;
+    const double last_ms = places_.empty() ? open_.time_ms : piece.start_ms + places_.back().local_ms;
+    if (passes && time_ms + step_ms - last_ms <= longest_ms_) {
+      if (passed_ms == 0) passed_ms = time_ms;
+      continue;
+    }
     add_turn_nodes(piece, time_ms - piece.start_ms);
+    places_.back().passed_ms = std::exchange(passed_ms, 0.0);
   }
   if (uniform_) return;
-  if (end_ms - open_->time_ms >= kMinGap_ms) add_turn_nodes(piece, piece.duration_ms);
+  if (end_ms - open_.time_ms >= kMinGap_ms) {
+    add_turn_nodes(piece, piece.duration_ms);
+    places_.back().passed_ms = passed_ms;
+  }
   if (origin_ms_ + static_cast<double>(next_grid_) * step_ms <= end_ms + kMinGap_ms) ++next_grid_;
 }
 
 /// The node at end_ms, and before it as many as the turn of an arc asks for.
 void Segmenter::add_turn_nodes(const PathPiece& piece, double end_ms) {
-  const double start_ms = local_times_.empty() ? std::max(0.0, open_->time_ms - piece.start_ms) : local_times_.back();
+  const double start_ms = places_.empty() ? std::max(0.0, open_.time_ms - piece.start_ms) : places_.back().local_ms;
   const double parts = uniform_ ? 1 : std::max(1.0, std::ceil(turn_rad(piece, start_ms, end_ms) / kMaxTurn_rad - 1e-9));
-  for (double i = 1; i < parts; ++i) local_times_.push_back(start_ms + (end_ms - start_ms) * i / parts);
-  local_times_.push_back(end_ms);
+  for (double i = 1; i < parts; ++i) places_.push_back({start_ms + (end_ms - start_ms) * i / parts, 0});
+  places_.push_back({end_ms, 0});
 }
 
-std::optional<Fault> Segmenter::add_node(const PathPiece& piece, double local_ms, std::vector<Segment>& out) {
+std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out) {
   runtime::poll_interruption();
-  MotorNode node;
+  const double local_ms = place.local_ms;
+  MotorNode& node = made_;
+  node.passed_ms = place.passed_ms;
+  node.step = false;
   node.time_ms = local_ms == piece.duration_ms ? piece.start_ms + piece.duration_ms : piece.start_ms + local_ms;
   node.command = piece.command;
   node.source = piece.source;
@@ -154,8 +185,8 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, double local_ms
   if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
-  fit_->add(std::move(*open_), out);
-  open_ = std::move(node);
+  fit_->add(open_, out);
+  std::swap(open_, made_);
   return std::nullopt;
 }
 
@@ -163,25 +194,24 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, double local_ms
 std::optional<Fault> Segmenter::close_gap(std::vector<Segment>& out) {
   if (!end_is_open_) return std::nullopt;
   end_is_open_ = false;
-  const PathPiece& piece = *previous_;
+  const PathPiece& piece = previous_;
   const double end_ms = piece.start_ms + piece.duration_ms;
-  const bool is_first = open_->before.stretch == 0;
-  if (is_first || end_ms - open_->time_ms >= kMinGap_ms) return add_node(piece, piece.duration_ms, out);
+  const bool is_first = open_.before.stretch == 0;
+  if (is_first || end_ms - open_.time_ms >= kMinGap_ms) return add_node(piece, {piece.duration_ms, 0}, out);
   PathMotion point;
   evaluate(piece, piece.duration_ms, kinematics_.axes(), point);
-  if (auto fault = kinematics_.position(point.position, open_->position_mu.data(), piece.source)) return fault;
-  open_->time_ms = end_ms;
-  fill_side(open_->before, piece, piece.duration_ms, point);
-  open_->after = open_->before;
+  if (auto fault = kinematics_.position(point.position, open_.position_mu.data(), piece.source)) return fault;
+  open_.time_ms = end_ms;
+  fill_side(open_.before, piece, piece.duration_ms, point);
+  open_.after = open_.before;
   return std::nullopt;
 }
 
 void Segmenter::abandon(std::vector<Segment>& out) {
-  if (!open_) return;
-  fit_->add(std::move(*open_), out);
+  if (!is_open_) return;
+  fit_->add(open_, out);
   fit_->finish(out);
-  open_.reset();
-  previous_.reset();
+  is_open_ = has_previous_ = false;
 }
 
 }  // namespace pmac::motion

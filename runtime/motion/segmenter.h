@@ -1,7 +1,8 @@
 // Hop 6 to 7: the path evaluated exactly at nodes, brought to motor space, and joined by cubics. Nodes lie on multiples of the
 // segment time from the start of the sequence; fitting through the nodes adds one at each end of a path piece and on arcs one
 // every 0.1 rad, so that every cubic follows one smooth piece. Manual: Turbo Software Reference Isx13, User's Manual p722. Where
-// motion rests (start, end, a full stop) a new chain of nodes begins.
+// motion rests (start, end, a full stop) a new chain of nodes begins. On a straight line at constant speed with lookahead one segment stands for several: it
+// says which nodes it passes.
 #pragma once
 
 #include <memory>
@@ -28,26 +29,32 @@ class Segmenter {
   void abandon(std::vector<Segment>& out);
 
  private:
+  struct Place { double local_ms, passed_ms; };   // of a node; see Segment
   std::optional<runtime::Fault> start_chain(const PathPiece& piece);
-  std::optional<runtime::Fault> add_node(const PathPiece& piece, double local_ms, std::vector<Segment>& out);
+  std::optional<runtime::Fault> add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out);
   std::optional<runtime::Fault> close_gap(std::vector<Segment>& out);
   void enter_piece(const PathPiece& piece);
   void fill_side(NodeSide& side, const PathPiece& piece, double local_ms, const PathMotion& point) const;
   void place_nodes(const PathPiece& piece);
   void add_turn_nodes(const PathPiece& piece, double end_ms);
+  bool passes_nodes(const PathPiece& piece) const;
 
   const PipelineConfig& config_;
   const MotorKinematics& kinematics_;
   std::unique_ptr<NodeFit> fit_;
   bool uniform_;                        // nodes on the grid only
-  std::optional<MotorNode> open_;       // last node; its far side is that of the next piece
-  std::optional<PathPiece> previous_;   // last piece
+  double longest_ms_;                   // of a segment on a straight line at constant speed, where nodes may be passed
+  MotorNode open_;                      // last node; its far side is that of the next piece
+  bool is_open_ = false;                // there is one
+  MotorNode made_;                      // the one being made
+  PathPiece previous_;                  // last piece
+  bool has_previous_ = false;           // there is one
   bool end_is_open_ = false;            // the end of previous_ has no node yet
   double origin_ms_ = 0;                // start of the chain
   std::int64_t next_grid_ = 1;          // next node at origin + next_grid * segment time
   std::uint64_t stretch_ = 0;
   double stretch_start_ms_ = 0;
-  std::vector<double> local_times_;
+  std::vector<Place> places_;
 };
 
 }  // namespace pmac::motion

@@ -19,7 +19,7 @@ constexpr std::size_t kNodesKept = 2 * kStencilNodes;
 
 class StencilFit : public NodeFit {
  public:
-  void add(MotorNode node, std::vector<Segment>& out) override {
+  void add(MotorNode& node, std::vector<Segment>& out) override {
     nodes_.push_back(std::move(node));
     while (next_ + kNodesAfter < nodes_.size()) decide_next(out);
   }
@@ -36,7 +36,7 @@ class StencilFit : public NodeFit {
     make_velocities(next_);
     if (next_ > 0) {
       const MotorNode &from = nodes_[next_ - 1], &to = nodes_[next_];
-      out.push_back(hermite_segment(from, to, from.position_mu, from.after.velocity_mu_ms, to.position_mu, to.before.velocity_mu_ms));
+      add_hermite_segment(from, to, from.position_mu, from.after.velocity_mu_ms, to.position_mu, to.before.velocity_mu_ms, out);
     }
     ++next_;
     if (next_ <= kNodesKept) return;

@@ -9,7 +9,7 @@
 namespace pmac::motion {
 namespace {
 
-constexpr int kBlock = 64;  // samples evaluated together
+constexpr std::size_t kBlock = 64;  // samples evaluated together
 
 double end_of(const TimedSegment& segment) { return segment.start_ms + segment.duration_ms; }
 
@@ -28,10 +28,12 @@ void Timeline::set_rest(std::vector<double> position_mu) {
   end_is_noted_ = true;
 }
 
-void Timeline::push(TimedSegment segment) {
+void Timeline::push(TimedSegment&& segment) {
   end_ms_ = end_of(segment);
   const double programmed_ms = segment.segment.duration_ms;
-  known_.push_back({std::move(segment), programmed_end_ms_});
+  Known& known = known_.extend();
+  known.timed = std::move(segment);
+  known.programmed_ms = programmed_end_ms_;
   programmed_end_ms_ += programmed_ms;
   end_is_noted_ = false;
 }
@@ -65,9 +67,12 @@ void Timeline::prune() {
 
 double Timeline::history_start_ms(double time_ms, double amount_ms) const {
   const std::size_t at = first_ending_after(time_ms);
-  const double reached_ms = at == known_.size() ? programmed_end_ms_ : known_[at].programmed_ms;
-  const std::size_t first = known_.first_not([&](const Known& k) { return k.programmed_ms < reached_ms - amount_ms; });
-  return first == known_.size() ? oldest_ms() : known_[first].timed.start_ms;
+  double wanted_ms = programmed_end_ms_ - amount_ms;
+  if (at < known_.size()) wanted_ms = known_[at].programmed_ms + known_[at].timed.programmed_ms(std::max(0.0, time_ms - known_[at].timed.start_ms)) - amount_ms;
+  const std::size_t beyond = known_.first_not([&](const Known& k) { return k.programmed_ms <= wanted_ms; });
+  if (beyond == 0) return oldest_ms();
+  const Known& first = known_[beyond - 1];
+  return first.timed.start_ms + time_at(first.timed, std::min(wanted_ms - first.programmed_ms, first.timed.segment.duration_ms));
 }
 
 double Timeline::programmed_after(double time_ms) const {
@@ -85,32 +90,44 @@ SourceLine Timeline::source_at(double time_ms) const {
   return next == known_.size() || known_[next].timed.start_ms > time_ms ? SourceLine{} : known_[next].timed.segment.source;
 }
 
-void Timeline::sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
-  int done = 0;
-  while (cursor_ > 0 && count > 0 && end_of(known_[cursor_ - 1].timed) > start_ms) --cursor_;  // the path is retraced, or a run was cut short
-  while (done < count) {
-    const double time_ms = start_ms + done * period_ms;
-    while (cursor_ < known_.size() && end_of(known_[cursor_].timed) <= time_ms) ++cursor_;
-    if (cursor_ == known_.size()) {
-      note_end();
-      sample_rest(time_ms, done, count, position_mu, velocity_mu_ms);
-      break;
-    }
-    const TimedSegment& segment = known_[cursor_].timed;
-    const int last = samples_in(segment, start_ms, period_ms, done, count);
-    sample_segment(segment, start_ms, period_ms, done, last, count, position_mu, velocity_mu_ms);
+void Timeline::sample(std::span<const double> time_ms, std::span<double> position_mu, std::span<double> velocity_mu_ms) {
+  const std::size_t count = time_ms.size();
+  for (std::size_t done = 0; done < count;) {
+    stand_at(time_ms[done]);
+    const bool is_over = cursor_ == known_.size();
+    const std::size_t last = is_over ? rest_until(time_ms, done) : segment_until(known_[cursor_].timed, time_ms, done);
+    if (is_over) sample_rest(time_ms, done, last, position_mu, velocity_mu_ms);
+    else sample_segment(known_[cursor_].timed, time_ms, done, last, position_mu, velocity_mu_ms);
     done = last;
   }
-  if (count > 0) sampled_ms_ = start_ms + (count - 1) * period_ms;
+  if (count > 0) sampled_ms_ = time_ms.back();
 }
 
-/// One behind the last sample, from `first` on, that lies before the end of the segment; at most kBlock of them.
-int Timeline::samples_in(const TimedSegment& segment, double start_ms, double period_ms, int first, int count) const {
-  const int most = std::min(count, first + kBlock);
-  const double end_ms = end_of(segment), guess = std::min((end_ms - start_ms) / period_ms, static_cast<double>(most));
-  int last = std::max(first + 1, static_cast<int>(guess));
-  while (last > first + 1 && start_ms + (last - 1) * period_ms >= end_ms) --last;
-  while (last < most && start_ms + last * period_ms < end_ms) ++last;
+void Timeline::pass(double time_ms) {
+  stand_at(time_ms);
+  sampled_ms_ = time_ms;
+}
+
+/// Backwards where the path is retraced, or a run was cut short.
+void Timeline::stand_at(double time_ms) {
+  while (cursor_ > 0 && end_of(known_[cursor_ - 1].timed) > time_ms) --cursor_;
+  while (cursor_ < known_.size() && end_of(known_[cursor_].timed) <= time_ms) ++cursor_;
+}
+
+/// One behind the last of the ascending times, from `first` on, that lies before the end of the segment; at most kBlock of them.
+std::size_t Timeline::segment_until(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first) const {
+  const std::size_t most = std::min(time_ms.size(), first + kBlock);
+  const double start_ms = time_ms[first], end_ms = end_of(segment);
+  std::size_t last = first + 1;
+  while (last < most && time_ms[last] < end_ms && time_ms[last] >= start_ms) ++last;
+  return last;
+}
+
+/// One behind the last of the times, from `first` on, that lies behind all segments.
+std::size_t Timeline::rest_until(std::span<const double> time_ms, std::size_t first) {
+  note_end();
+  std::size_t last = first + 1;
+  while (last < time_ms.size() && time_ms[last] >= time_ms[first]) ++last;
   return last;
 }
 
@@ -127,37 +144,39 @@ void Timeline::peek(double time_ms, std::span<double> position_mu) const {
 }
 
 /// Samples first..last-1, none after the end of the segment; before its start it stands at its first point.
-void Timeline::sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
+void Timeline::sample_segment(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first, std::size_t last,
                               std::span<double> position_mu, std::span<double> velocity_mu_ms) const {
-  std::array<double, kBlock> at;  // filled as far as it is read
-  const int n = last - first;
-  const double segment_ms = segment.start_ms, end = segment.segment.duration_ms;
-  for (int k = 0; k < n; ++k) {
-    const double t = start_ms + (first + k) * period_ms - segment_ms, d = std::min(segment.programmed_ms(t), end);
-    at[static_cast<std::size_t>(k)] = t <= 0 ? 0 : d;
+  std::array<double, kBlock> at;  // programmed time since its start; filled as far as it is read
+  const std::size_t n = last - first, count = time_ms.size();
+  const double segment_ms = segment.start_ms, end = segment.segment.duration_ms, rate = segment.rate, half_slope = segment.rate_slope / 2;
+  const double* time = time_ms.data() + first;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double t = time[k] - segment_ms, d = t * (rate + t * half_slope), inside = d < end ? d : end;
+    at[k] = t <= 0 ? 0 : inside;
   }
   for (std::size_t m = 0; m < segment.segment.motor.size(); ++m) {
     const MotorCubic q = segment.segment.motor[m];
-    double* position = position_mu.data() + m * static_cast<std::size_t>(count) + first;
-    for (int k = 0; k < n; ++k) position[k] = q.position(at[static_cast<std::size_t>(k)]);
+    double* position = position_mu.data() + m * count + first;
+    for (std::size_t k = 0; k < n; ++k) position[k] = q.position(at[k]);
     if (velocity_mu_ms.empty()) continue;
-    double* velocity = velocity_mu_ms.data() + m * static_cast<std::size_t>(count) + first;
-    for (int k = 0; k < n; ++k) {
-      const double t = start_ms + (first + k) * period_ms - segment_ms;
-      velocity[k] = q.velocity(at[static_cast<std::size_t>(k)]) * (t < 0 ? 0 : segment.rate + segment.rate_slope * t);
+    double* velocity = velocity_mu_ms.data() + m * count + first;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double t = time[k] - segment_ms;
+      velocity[k] = q.velocity(at[k]) * (t < 0 ? 0 : rate + segment.rate_slope * t);
     }
   }
 }
 
-/// Samples first..count-1, the first at time_ms, after the last segment. The very end of it still has its velocity.
-void Timeline::sample_rest(double time_ms, int first, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const {
-  const bool at_end = time_ms == end_ms_ && !end_velocity_mu_ms_.empty();
+/// Samples first..last-1, after the last segment. The very end of it still has its velocity.
+void Timeline::sample_rest(std::span<const double> time_ms, std::size_t first, std::size_t last, std::span<double> position_mu,
+                           std::span<double> velocity_mu_ms) const {
+  const bool at_end = time_ms[first] == end_ms_ && !end_velocity_mu_ms_.empty();
   for (std::size_t m = 0; m < rest_mu_.size(); ++m) {
-    const auto row = static_cast<std::ptrdiff_t>(m) * count;
-    std::fill(position_mu.begin() + row + first, position_mu.begin() + row + count, rest_mu_[m]);
+    const std::size_t row = m * time_ms.size();
+    std::fill(position_mu.data() + row + first, position_mu.data() + row + last, rest_mu_[m]);
     if (velocity_mu_ms.empty()) continue;
-    std::fill(velocity_mu_ms.begin() + row + first, velocity_mu_ms.begin() + row + count, 0.0);
-    if (at_end) velocity_mu_ms[static_cast<std::size_t>(row + first)] = end_velocity_mu_ms_[m];
+    std::fill(velocity_mu_ms.data() + row + first, velocity_mu_ms.data() + row + last, 0.0);
+    if (at_end) velocity_mu_ms[row + first] = end_velocity_mu_ms_[m];
   }
 }
 

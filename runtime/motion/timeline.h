@@ -17,7 +17,7 @@ class Timeline {
   void set_rest(std::vector<double> position_mu);
 
   /// Starts at or after the end of the one before.
-  void push(TimedSegment segment);
+  void push(TimedSegment&& segment);
   /// So much programmed time stays known behind the last sample, for retracing.
   void keep_history(double programmed_ms) { history_ms_ = programmed_ms; }
   /// Forgets segments that sample() has passed and that are no history either.
@@ -36,16 +36,21 @@ class Timeline {
   SourceLine source_at(double time_ms) const;
 
   /// See Pipeline::sample().
-  void sample(double start_ms, double period_ms, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms);
+  void sample(std::span<const double> time_ms, std::span<double> position_mu, std::span<double> velocity_mu_ms);
+  /// Stands where sample() at this time would leave it.
+  void pass(double time_ms);
 
   /// Positions at one time that has not been pruned.
   void peek(double time_ms, std::span<double> position_mu) const;
 
  private:
-  int samples_in(const TimedSegment& segment, double start_ms, double period_ms, int first, int count) const;
-  void sample_segment(const TimedSegment& segment, double start_ms, double period_ms, int first, int last, int count,
+  void stand_at(double time_ms);
+  std::size_t segment_until(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first) const;
+  std::size_t rest_until(std::span<const double> time_ms, std::size_t first);
+  void sample_segment(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first, std::size_t last,
                       std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
-  void sample_rest(double time_ms, int first, int count, std::span<double> position_mu, std::span<double> velocity_mu_ms) const;
+  void sample_rest(std::span<const double> time_ms, std::size_t first, std::size_t last, std::span<double> position_mu,
+                   std::span<double> velocity_mu_ms) const;
 
   struct Known { TimedSegment timed; double programmed_ms; };   // programmed_ms: of all segments before it
   std::size_t first_ending_after(double time_ms) const;

@@ -9,13 +9,6 @@ namespace {
 
 constexpr double kSamePlace_ms = 1e-6;
 
-/// Time since the start of the segment at which d of its programmed time has passed.
-double time_at(const TimedSegment& segment, double d) {
-  const double end_rate2 = segment.rate * segment.rate + 2 * segment.rate_slope * d;
-  const double rates = segment.rate + std::sqrt(std::max(0.0, end_rate2));
-  return rates > 0 ? 2 * d / rates : 0;
-}
-
 /// Places that differ by less are the same: little also where programmed time hardly runs.
 double same_place_ms(const TimedSegment& segment) {
   return kSamePlace_ms * std::min(1.0, segment.segment.duration_ms / segment.duration_ms);
@@ -43,10 +36,11 @@ void Timings::add(const MoveBegin& begin) {
 }
 
 void Timings::add(const MoveEnd& end) {
-  for (auto record = records_.rbegin(); record != records_.rend(); ++record) {
-    if (record->id != end.id) continue;
-    record->end = {end.end_ms, 0, true};
-    cover_now(record->end);
+  for (std::size_t i = records_.size(); i-- > 0;) {
+    Record& record = records_[i];
+    if (record.id != end.id) continue;
+    record.end = {end.end_ms, 0, true};
+    cover_now(record.end);
     break;
   }
   deliver();
@@ -75,12 +69,13 @@ void Timings::cover_place(Place& place, const TimedSegment& segment, bool round_
 
 void Timings::cover(const TimedSegment& segment) {
   const double end_ms = segment.segment.start_ms + segment.segment.duration_ms;
-  for (Record& record : records_) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    Record& record = records_[i];
     if (record.sync.programmed_ms > end_ms + kSamePlace_ms) break;
     const bool start_was_known = record.start.known;
-    cover_place(record.sync, segment, sync_on_segments_);
-    cover_place(record.start, segment, false);
-    cover_place(record.end, segment, false);
+    if (!record.sync.known) cover_place(record.sync, segment, sync_on_segments_);
+    if (!start_was_known) cover_place(record.start, segment, false);
+    if (record.end.given && !record.end.known) cover_place(record.end, segment, false);
     if (!start_was_known) note_start(record);
   }
   covered_programmed_ms_ = end_ms;
@@ -89,7 +84,8 @@ void Timings::cover(const TimedSegment& segment) {
 }
 
 void Timings::end_sequence() {
-  for (Record& record : records_) {
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    Record& record = records_[i];
     const bool start_was_known = record.start.known;
     for (Place* place : {&record.sync, &record.start, &record.end})
       if (!place->known) *place = {place->programmed_ms, covered_ms_, true, true};
@@ -99,8 +95,8 @@ void Timings::end_sequence() {
 }
 
 int Timings::ahead(double time_ms) const {
-  const auto first = std::upper_bound(starts_ms_.begin(), starts_ms_.end(), time_ms);
-  return unknown_starts_ + static_cast<int>(starts_ms_.end() - first);
+  const std::size_t first = starts_ms_.first_not([&](double start_ms) { return start_ms <= time_ms; });
+  return unknown_starts_ + static_cast<int>(starts_ms_.size() - first);
 }
 
 double Timings::ahead_until_ms(int moves) const {

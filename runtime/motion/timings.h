@@ -2,10 +2,10 @@
 // cover them are committed.
 #pragma once
 
-#include <deque>
 #include <vector>
 
 #include "runtime/motion/planner.h"
+#include "runtime/motion/ring.h"
 #include "runtime/motion/segment.h"
 
 namespace pmac::motion {
@@ -41,8 +41,8 @@ class Timings {
   void deliver();
 
   bool sync_on_segments_ = false;
-  std::deque<Record> records_;          // not yet delivered
-  std::deque<double> starts_ms_;        // known, ascending
+  Ring<Record> records_;          // not yet delivered
+  Ring<double> starts_ms_;        // known, ascending
   int unknown_starts_ = 0;
   std::size_t sync_delivered_ = 0;      // first records whose sync time has been handed on
   std::vector<SyncTime> sync_times_;

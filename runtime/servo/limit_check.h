@@ -44,6 +44,7 @@ class LimitCheck : public SampleSink {
 
   explicit LimitCheck(Ask ask) : ask_(std::move(ask)) {}
   void take(const SampleBlock& block) override;
+  bool takes_late() const override { return false; }
   /// The path's own acceleration steps there (MachineObservers::jerk_join): no jerk is noted of the samples around it. Ascending.
   void excuse_jerk(int coord, double time_ms) { joins_.push_back({coord, time_ms}); }
   /// Motors that were in use, by number. The run is over.

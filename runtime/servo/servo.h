@@ -27,6 +27,9 @@ class SampleSink {
  public:
   virtual ~SampleSink() = default;
   virtual void take(const SampleBlock& block) = 0;
+  /// It looks at nothing but the samples. False: it asks the machine as well, or is told of moves, and has to have the samples of a time
+  /// before anything else happens at it.
+  virtual bool takes_late() const { return true; }
 };
 
 /// Worst speed and acceleration of every motor, from first and second differences of the samples.

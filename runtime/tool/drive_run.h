@@ -25,6 +25,7 @@ class DriveRun : public runtime::SampleSink {
   /// The observers of a coordinate system's stages, and the drive's besides.
   motion::StageObservers observed(int coord, motion::StageObservers stages);
   void take(const runtime::SampleBlock& block) override { if (drive_) drive_->take(block); }
+  bool takes_late() const override { return false; }
   void take(const runtime::MoveRecord& move) { if (drive_) drive_->take(move); }
 
   /// The run is over: encodes, prints the frames (--emit=frames), executes, writes the files. Returns an exit code; what went wrong is

@@ -35,8 +35,25 @@ std::string clashing_file(const RunOptions& options) {
   return {};
 }
 
+namespace {
+
+/// Most samples that the run can have, one a servo cycle up to the first at or after its end; 0 where nobody knows, or for more than a file
+/// should be laid out for beforehand.
+std::uint64_t known_samples(const RunOptions& options, double period_ms) {
+  constexpr double kMost = 1e9;
+  if (!options.until_s || options.console) return 0;
+  const double stop_ms = std::min(*options.until_s, options.max_time_s) * 1000.0;
+  if (!(stop_ms >= 0 && stop_ms / period_ms < kMost)) return 0;
+  auto tick = static_cast<std::uint64_t>(stop_ms / period_ms);
+  while (tick > 0 && static_cast<double>(tick - 1) * period_ms >= stop_ms) --tick;
+  while (static_cast<double>(tick) * period_ms < stop_ms) ++tick;
+  return tick + 1;
+}
+
+}  // namespace
+
 Outputs::Outputs(const RunOptions& options, runtime::Machine& machine, Recorder& recorder) : options_(options) {
-  if (!options.record.empty()) record(recorder);
+  if (!options.record.empty()) record(machine, recorder);
   if (!options.gather.empty()) gather(machine);
   if (!options.plots.empty() && options.drive.empty()) keep_for_plots(recorder);  // with --drive its own picture
 }
@@ -46,15 +63,17 @@ void Outputs::fail(const std::string& message) {
   failed_ = true;
 }
 
-void Outputs::record(Recorder& recorder) {
-  recorder.add_sink({[this](const std::vector<std::string>& columns) {
+void Outputs::record(runtime::Machine& machine, Recorder& recorder) {
+  recorder.add_sink({[this, &machine](const std::vector<std::string>& columns) {
                        try {
-                         record_ = runtime::make_table_writer(*runtime::table_format_of(options_.record), options_.record, columns);
+                         record_ = runtime::make_table_writer(*runtime::table_format_of(options_.record), options_.record, columns,
+                                                              known_samples(options_, machine.servo_period_ms()));
                        } catch (const std::exception& e) { fail(e.what()); }
                      },
-                     [this](std::span<const double> rows) {
+                     {},
+                     [this](std::span<const std::span<const double>> columns) {
                        try {
-                         if (record_ && !failed_) record_->append(rows);
+                         if (record_ && !failed_) record_->append_columns(columns);
                        } catch (const std::exception& e) { fail(e.what()); }
                      }});
 }

@@ -22,7 +22,7 @@ class Outputs {
   std::uint64_t size() const { return (record_ ? record_->size() : 0) + (gather_ ? gather_->size() : 0); }
 
  private:
-  void record(Recorder& recorder);
+  void record(runtime::Machine& machine, Recorder& recorder);
   void gather(runtime::Machine& machine);
   void keep_for_plots(Recorder& recorder);
   void fail(const std::string& message);

@@ -5,35 +5,45 @@
 
 #include <fmt/format.h>
 
+#include "kinematics/kinematics.h"
+#include "runtime/gather/table_writer.h"
+
 namespace pmac::tool {
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 4096;
+
+}  // namespace
 
 void Recorder::take(const runtime::SampleBlock& block) {
   if (sinks_.empty()) return;
-  if (held_.capacity() == 0) held_.reserve(kHeldValues + kHeldValues / 8);
   take_new_motors(block.motors);
-  std::vector<std::size_t> row_of(motors_.size());
-  for (std::size_t m = 0; m < motors_.size(); ++m)
-    row_of[m] = static_cast<std::size_t>(std::find(block.motors.begin(), block.motors.end(), motors_[m]) - block.motors.begin());
-  for (int k = 0; k < block.count; ++k) {
-    held_.push_back(block.time_ms(k) / 1000.0);
-    for (std::size_t row : row_of) {
-      held_.push_back(block.at(static_cast<int>(row), k));
-      if (per_motor_ == 2) held_.push_back(block.actual_at(static_cast<int>(row), k));
-    }
+  held_.resize(motor_width());
+  const std::size_t before = held_rows();
+  held_[0].resize(before + static_cast<std::size_t>(block.count));
+  for (int k = 0; k < block.count; ++k) held_[0][before + static_cast<std::size_t>(k)] = block.time_ms(k) / 1000.0;
+  const auto count = static_cast<std::ptrdiff_t>(block.count);
+  for (std::size_t m = 0; m < motors_.size(); ++m) {
+    const auto first = (std::find(block.motors.begin(), block.motors.end(), motors_[m]) - block.motors.begin()) * count;
+    std::vector<double>* column = &held_[1 + per_motor_ * m];
+    column->insert(column->end(), block.position_mu.begin() + first, block.position_mu.begin() + first + count);
+    if (per_motor_ == 2) column[1].insert(column[1].end(), block.actual_mu.begin() + first, block.actual_mu.begin() + first + count);
   }
-  if (!fixed_ && held_.size() >= kHeldValues) fix_columns();
-  if (fixed_) emit_held();
+  if (!fixed_ && held_rows() * motor_width() >= kHeldValues) fix_columns();
+  if (fixed_ && (held_rows() >= kRowsAtOnce || asks_routines())) emit_held();
 }
 
-/// In pieces, so that what waited for the columns is not in memory twice.
+/// Forward routines see the variables of their time.
+bool Recorder::asks_routines() const {
+  return std::any_of(axes_.begin(), axes_.end(), [this](const AxisColumn& column) { return !machine_.linear_axes(column.coord); });
+}
+
 void Recorder::emit_held() {
-  constexpr std::size_t kRows = 4096;
-  const std::size_t width = motor_width(), rows = held_.size() / width;
-  for (std::size_t first = 0; first < rows; first += kRows) {
-    const std::size_t count = std::min(kRows, rows - first);
-    emit(std::span<const double>(held_).subspan(first * width, count * width), count);
+  for (std::size_t first = 0; first < held_rows(); first += kRowsAtOnce) emit(first, std::min(kRowsAtOnce, held_rows() - first));
+  for (std::vector<double>& column : held_) {
+    column.clear();
+    if (column.capacity() > 4 * kRowsAtOnce) column.shrink_to_fit();   // what waited for the columns
   }
-  held_.clear();
 }
 
 void Recorder::take_new_motors(std::span<const int> motors) {
@@ -44,16 +54,9 @@ void Recorder::take_new_motors(std::span<const int> motors) {
       continue;
     }
     const auto at = std::upper_bound(motors_.begin(), motors_.end(), motor) - motors_.begin();
-    const std::size_t old_width = motor_width();
-    const auto before = static_cast<std::ptrdiff_t>(1 + per_motor_ * static_cast<std::size_t>(at));
-    std::vector<double> wider;
-    for (std::size_t row = 0; row < held_.size(); row += old_width) {
-      const auto first = held_.begin() + static_cast<std::ptrdiff_t>(row);
-      wider.insert(wider.end(), first, first + before);
-      wider.insert(wider.end(), per_motor_, 0.0);  // it has not moved yet
-      wider.insert(wider.end(), first + before, first + static_cast<std::ptrdiff_t>(old_width));
-    }
-    held_ = std::move(wider);
+    const std::vector<double> not_moved_yet(held_rows(), 0.0);
+    held_.resize(std::max(held_.size(), motor_width()));
+    held_.insert(held_.begin() + 1 + static_cast<std::ptrdiff_t>(per_motor_) * at, per_motor_, not_moved_yet);
     motors_.insert(motors_.begin() + at, motor);
   }
 }
@@ -79,24 +82,51 @@ void Recorder::fix_columns() {
     if (sink.begin) sink.begin(names);
 }
 
-void Recorder::emit(std::span<const double> motor_rows, std::size_t count) {
-  const std::size_t width = motor_width();
+/// Held rows first .. first+count-1, with their axes.
+void Recorder::emit(std::size_t first, std::size_t count) {
+  map_axes(first, count);
+  columns_.clear();
+  for (const std::vector<double>& column : held_) columns_.push_back(std::span(column).subspan(first, count));
+  for (const std::vector<double>& column : mapped_) columns_.push_back(std::span(column).first(count));
+  const bool as_rows = std::any_of(sinks_.begin(), sinks_.end(), [](const RowSink& sink) { return static_cast<bool>(sink.rows); });
+  if (as_rows) runtime::interleave(columns_, rows_);
+  for (const RowSink& sink : sinks_) {
+    if (sink.columns) sink.columns(columns_);
+    if (sink.rows) sink.rows(rows_);
+  }
+}
+
+/// Axes of one coordinate system after the other; their columns lie side by side.
+void Recorder::map_axes(std::size_t first, std::size_t count) {
+  mapped_.resize(axes_.size());
+  for (std::vector<double>& column : mapped_) column.resize(kRowsAtOnce);
+  for (std::size_t column = 0, end = 0; column < axes_.size(); column = end) {
+    while (end < axes_.size() && axes_[end].coord == axes_[column].coord) ++end;
+    if (const kinematics::AxisMap* map = machine_.linear_axes(axes_[column].coord)) map_linear_axes(*map, first, count, column, end);
+    else map_axis_rows(first, count, column, end);
+  }
+}
+
+void Recorder::map_linear_axes(const kinematics::AxisMap& map, std::size_t first, std::size_t count, std::size_t column, std::size_t end) {
+  static const std::vector<double> kAtHome(kRowsAtOnce, 0.0);
+  std::vector<const double*> motor_rows;
+  for (const kinematics::MotorDefinition& d : map.definitions()) {
+    const auto m = static_cast<std::size_t>(std::find(motors_.begin(), motors_.end(), d.motor) - motors_.begin());
+    motor_rows.push_back(m < motors_.size() ? held_[1 + per_motor_ * m].data() + first : kAtHome.data());
+  }
+  for (std::size_t c = column; c < end; ++c)
+    if (const std::span<double> row(mapped_[c].data(), count); !map.axis_row_from_motor_rows(axes_[c].axis, motor_rows, row)) std::fill(row.begin(), row.end(), 0.0);
+}
+
+/// Through the forward routine, row by row.
+void Recorder::map_axis_rows(std::size_t first, std::size_t count, std::size_t column, std::size_t end) {
   std::array<double, bytecode::kMaxMotors> motor_mu{};
   motion::AxisVector axis_uu{};
-  out_.clear();
   for (std::size_t row = 0; row < count; ++row) {
-    const std::span<const double> values = motor_rows.subspan(row * width, width);
-    out_.insert(out_.end(), values.begin(), values.end());
-    for (std::size_t m = 0; m < motors_.size(); ++m) motor_mu[static_cast<std::size_t>(motors_[m])] = values[1 + per_motor_ * m];
-    int mapped = -1;
-    for (const AxisColumn& column : axes_) {
-      if (column.coord != mapped) machine_.axes_from_motors(column.coord, motor_mu, axis_uu);
-      mapped = column.coord;
-      out_.push_back(axis_uu[static_cast<std::size_t>(column.axis)]);
-    }
+    for (std::size_t m = 0; m < motors_.size(); ++m) motor_mu[static_cast<std::size_t>(motors_[m])] = held_[1 + per_motor_ * m][first + row];
+    machine_.axes_from_motors(axes_[column].coord, motor_mu, axis_uu);
+    for (std::size_t c = column; c < end; ++c) mapped_[c][row] = axis_uu[static_cast<std::size_t>(axes_[c].axis)];
   }
-  for (const RowSink& sink : sinks_)
-    if (sink.rows) sink.rows(out_);
 }
 
 void Recorder::finish() {

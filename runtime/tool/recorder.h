@@ -12,10 +12,11 @@
 
 namespace pmac::tool {
 
-/// Takes the columns once, then rows (row-major, a multiple of the column count).
+/// Takes the columns once, then rows (row-major, a multiple of the column count), or values column by column. Any may be empty.
 struct RowSink {
   std::function<void(const std::vector<std::string>& columns)> begin;
   std::function<void(std::span<const double> rows)> rows;
+  std::function<void(std::span<const std::span<const double>> columns)> columns = {};
 };
 
 /// Columns: time_s, Motor[n].DesPos (and Motor[n].ActPos on request) by motor number, then axes: X where one coordinate system has motors, &2.X where several have.
@@ -44,10 +45,15 @@ class Recorder : public runtime::SampleSink {
  private:
   struct AxisColumn { int coord; int axis; };
   std::size_t motor_width() const { return 1 + per_motor_ * motors_.size(); }
+  std::size_t held_rows() const { return held_.empty() ? 0 : held_[0].size(); }
+  bool asks_routines() const;
   void take_new_motors(std::span<const int> motors);
   void fix_columns();
   void emit_held();
-  void emit(std::span<const double> motor_rows, std::size_t count);
+  void emit(std::size_t first, std::size_t count);
+  void map_axes(std::size_t first, std::size_t count);
+  void map_linear_axes(const kinematics::AxisMap& map, std::size_t first, std::size_t count, std::size_t column, std::size_t end);
+  void map_axis_rows(std::size_t first, std::size_t count, std::size_t column, std::size_t end);
 
   runtime::Machine& machine_;
   const std::size_t per_motor_;     // columns
@@ -55,9 +61,11 @@ class Recorder : public runtime::SampleSink {
   std::vector<int> motors_;
   std::vector<int> late_motors_;
   std::vector<AxisColumn> axes_;
-  std::vector<double> held_;        // rows of time and motors
+  std::vector<std::vector<double>> held_;   // [column of time and motors][row]
   bool fixed_ = false;
-  std::vector<double> out_;
+  std::vector<std::vector<double>> mapped_; // [axis column][row] of what is being handed over
+  std::vector<std::span<const double>> columns_;
+  std::vector<double> rows_;
 };
 
 }  // namespace pmac::tool

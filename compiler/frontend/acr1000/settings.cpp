@@ -49,8 +49,9 @@ int version_number(std::string_view text) {
     if (error != std::errc() || parts[count] < 0 || parts[count] > 999) return -1;
     ++count;
     at = next;
-    if (at < end && *at++ != '.') return -1;
-    if (at == end && end[-1] == '.') return -1;
+    if (at == end) break;
+    if (*at != '.' || at + 1 == end) return -1;
+    ++at;
   }
   return count == 0 || at != end ? -1 : parts[0] * 1000000 + parts[1] * 1000 + parts[2];
 }

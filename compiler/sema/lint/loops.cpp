@@ -51,7 +51,8 @@ class Loops {
     const bool simple = branch && branch->branches.size() == 1 && !branch->otherwise;
     const ir::Stmt& jump = simple ? *branch->branches[0].body : *statements[at];
     const auto number = goto_label(jump);
-    const auto label = number ? labels.find(*number) : labels.end();
+    if (!number) return;
+    const auto label = labels.find(*number);
     if (label == labels.end()) return;
     Loop loop{simple ? branch->branches[0].condition.get() : nullptr, {}, simple ? branch->branches[0].condition->span : jump.span, {*number}};
     for (std::size_t i = label->second + 1; i < at; ++i) loop.body.push_back(statements[i].get());

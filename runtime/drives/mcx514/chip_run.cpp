@@ -33,9 +33,10 @@ void Chip::begin(Segment segment, const SpeedSetting& speed) {
   running->next = now_;
   open_record(*running);
   const bool is_single = (running->segment.axes & (running->segment.axes - 1)) == 0;
-  auto& place = is_single ? single_[static_cast<std::size_t>(__builtin_ctz(running->segment.axes))] : interpolation_;
-  place = std::move(running);
-  if (speed.decelerates) count_remaining(*place);
+  std::unique_ptr<Running>* place = &interpolation_;
+  if (is_single) place = &single_[static_cast<std::size_t>(__builtin_ctz(running->segment.axes))];
+  *place = std::move(running);
+  if (speed.decelerates) count_remaining(**place);
 }
 
 void Chip::count_remaining(Running& running) {

@@ -1,4 +1,5 @@
 // Commands that write data, read it back, or act on what runs.
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -85,7 +86,7 @@ void Chip::read_data(const Command& command, std::uint32_t axes, Place place) {
     case code::kRRP: value = a.real_position; break;
     case code::kRCV: {
       const Running* running = single_[axis] ? single_[axis].get() : interpolation_ && has_axis(interpolation_->record.axes, axis) ? interpolation_.get() : nullptr;
-      value = running ? static_cast<std::int64_t>(running->speed.now_pps() + 0.5) : 0;
+      value = running ? std::llround(running->speed.now_pps()) : 0;
       break;
     }
     case code::kRMR0: case code::kRMR1: case code::kRMR2: case code::kRMR3:

@@ -40,7 +40,7 @@ double ChordFinder::distance_within(const Point& p, double s0, double s1, std::s
   double best = 1e300;
   std::size_t found = hint;
   for (std::size_t i = hint; i + 1 < points_.size() && s_[i] < s1; ++i) {
-    const Point a = s_[i] < s0 ? at(s0) : points_[i], b = s_[i + 1] > s1 ? at(s1) : points_[i + 1];
+    const Point a = (s_[i] < s0) ? at(s0) : points_[i], b = (s_[i + 1] > s1) ? at(s1) : points_[i + 1];
     const double d = distance(p, nearest_on_segment(a, b, p));
     if (d < best) {
       best = d;

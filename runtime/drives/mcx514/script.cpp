@@ -176,7 +176,8 @@ std::optional<std::uint16_t> Reader::read_value() {
   const std::string_view digits = word();
   std::uint16_t value = 0;
   const bool has_h = digits.size() == 5 && (digits[4] == 'h' || digits[4] == 'H');
-  const auto [end, status] = std::from_chars(digits.data(), digits.data() + std::min<std::size_t>(digits.size(), 4), value, 16);
+  const std::string_view four = digits.substr(0, 4);
+  const auto [end, status] = std::from_chars(four.data(), four.data() + four.size(), value, 16);
   const bool fits = has_h && status == std::errc() && end == digits.data() + 4;
   if (!fits) {
     error(fmt::format("'{}' is no value; four hexadecimal digits and h are wanted, such as 03E8h", digits.empty() ? visible() : digits));

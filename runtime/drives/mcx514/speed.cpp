@@ -27,7 +27,7 @@ double pulse_time_s(double v0, double v1, double accel, double decel, double cap
 
 double seconds(Time time) { return static_cast<double>(time) / static_cast<double>(std::int64_t{1} << kFractionBits) / kClockHz; }
 
-Time time_from_seconds(double seconds) { return static_cast<Time>(seconds * kClockHz * static_cast<double>(std::int64_t{1} << kFractionBits) + 0.5); }
+Time time_from_seconds(double seconds) { return static_cast<Time>(std::round(seconds * kClockHz * static_cast<double>(std::int64_t{1} << kFractionBits))); }
 
 Speed::Speed(const SpeedSetting& setting) : setting_(setting) {
   speed_pps_ = static_cast<double>(ramps() ? setting.initial_pps : setting.drive_pps);

@@ -129,6 +129,67 @@ TEST_CASE("npz: more rows than a block, appended in uneven pieces", "[gather]") 
   CHECK(folder.file_count() == 1);
 }
 
+TEST_CASE("npz: the same bytes, whether the number of rows is known beforehand or not, and rows come as rows or as columns", "[gather]") {
+  const std::size_t count = GENERATE(0, 1, 100, 32768, 65536, 100001);
+  std::vector<double> rows;
+  std::vector<std::vector<double>> columns(3);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto value = static_cast<double>(k);
+    const double row[] = {value, value * value, value / 3};
+    rows.insert(rows.end(), row, row + 3);
+    for (std::size_t c = 0; c < 3; ++c) columns[c].push_back(row[c]);
+  }
+  const ScratchFolder folder;
+  const std::vector<std::string> names{"k", "square", "third"};
+  const auto written_as = [&](std::uint64_t known_rows, bool by_columns) {
+    const auto writer = make_table_writer(TableFormat::kNpz, folder.file("a.npz"), names, known_rows);
+    if (!by_columns) writer->append(rows);
+    for (std::size_t first = 0; by_columns && first < count; first += 5000) {
+      std::vector<std::span<const double>> piece;
+      for (const auto& column : columns) piece.push_back(std::span(column).subspan(first, std::min<std::size_t>(5000, count - first)));
+      writer->append_columns(piece);
+    }
+    writer->finish();
+    return contents_of(folder.file("a.npz"));
+  };
+  const std::string bytes = written_as(0, false);
+  CHECK(read_npz(bytes)["third.npy"] == columns[2]);
+  CHECK((written_as(0, true) == bytes));
+  if (count > 0) CHECK((written_as(count, true) == bytes));
+  CHECK((written_as(count + 1, false) == bytes));
+  CHECK((written_as(10 * count + 12345, true) == bytes));  // ended early
+}
+
+TEST_CASE("csv: columns are written as the rows they make", "[gather]") {
+  const ScratchFolder folder;
+  const auto writer = make_table_writer(TableFormat::kCsv, folder.file("a.csv"), {"a", "b"});
+  const std::vector<double> a{1, 2}, b{3, 4.5};
+  const std::vector<std::span<const double>> columns{a, b};
+  writer->append_columns(columns);
+  writer->finish();
+  CHECK(contents_of(folder.file("a.csv")) == "a,b\n1,3\n2,4.5\n");
+}
+
+TEST_CASE("checksum of archives: long runs of bytes as bit by bit, and joined from two parts", "[gather]") {
+  std::mt19937 random(5);
+  std::vector<std::uint8_t> bytes(1000);
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+  const auto bit_by_bit = [](std::span<const std::uint8_t> of) {  // the definition: PKWARE APPNOTE 4.4.7
+    std::uint32_t crc = 0xffffffffu;
+    for (const std::uint8_t byte : of) {
+      crc ^= byte;
+      for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1u) ? 0xedb88320u : 0u);
+    }
+    return ~crc;
+  };
+  for (const std::size_t size : {0, 1, 63, 64, 65, 127, 128, 200, 640, 1000}) {
+    const std::span<const std::uint8_t> part(bytes.data(), size), rest(bytes.data() + size, bytes.size() - size);
+    CHECK(zip_crc32(part) == bit_by_bit(part));
+    CHECK(zip_crc32(rest, zip_crc32(part)) == bit_by_bit(bytes));
+    CHECK(joined_crc32(zip_crc32(part), zip_crc32(rest), rest.size()) == bit_by_bit(bytes));
+  }
+}
+
 TEST_CASE("npz: cannot go into a pipe or device", "[gather]") {
   CHECK_THROWS_WITH(make_table_writer(TableFormat::kNpz, "/dev/null", {"t"}), Catch::Contains("needs a file"));
 }

@@ -37,7 +37,7 @@ std::vector<double> run_ticking(const PipelineConfig& config, const Program& pro
       REQUIRE_FALSE(pipeline.add(program.commands[next++]));
     if (next == program.commands.size()) REQUIRE_FALSE(pipeline.end_sequence());
     if (!pipeline.at_rest(t)) REQUIRE(pipeline.horizon_ms() >= t);
-    pipeline.sample(t, kServoPeriod_ms, 1, position, {});
+    pipeline.sample(t, position, {});
     x.push_back(position[0]);
     if (next == program.commands.size() && pipeline.at_rest(t)) return x;
   }
@@ -129,13 +129,13 @@ TEST_CASE("pipeline: sequences follow one another, rest lies between", "[motion]
   REQUIRE_FALSE(pipeline.end_sequence());
   CHECK(pipeline.end_ms() == Approx(2100));
   std::vector<double> position(2 * 3);
-  pipeline.sample(1250, 300, 3, position, {});  // cruise, rest, cruise back
+  pipeline.sample(times(1250, 300, 3), position, {});  // cruise, rest, cruise back
   CHECK(position[0] == Approx(10000));
   CHECK(position[1] == Approx(20000));
   CHECK(position[2] == Approx(10000));
   CHECK(pipeline.executing_source(1550) == SourceLine{});
   CHECK(pipeline.executing_source(1850).line == 2);
-  pipeline.sample(2100, 1, 1, position, {});
+  pipeline.sample(2100, position, {});
   CHECK(position[0] == Approx(0).margin(1e-9));
 }
 
@@ -146,7 +146,7 @@ TEST_CASE("pipeline: a rapid move in between moves the start of the next sequenc
   REQUIRE_FALSE(pipeline.add(Program().feed(50).ta(100).xy(5, 10).commands[0]));
   REQUIRE_FALSE(pipeline.end_sequence());
   std::vector<double> position(2);
-  pipeline.sample(0, 1, 1, position, {});
+  pipeline.sample(0, position, {});
   CHECK(position[0] == 5000);
   CHECK(position[1] == 7000);
 }
@@ -178,7 +178,7 @@ TEST_CASE("pipeline: a long program of short lines keeps its memory and precisio
     command.target_uu[kY] = 50 - 50 * std::cos(angle);
     REQUIRE_FALSE(pipeline.add(command));
     while (t + 64 * kServoPeriod_ms < pipeline.horizon_ms()) {
-      pipeline.sample(t, kServoPeriod_ms, 64, position, {});
+      pipeline.sample(times(t, kServoPeriod_ms, 64), position, {});
       for (std::size_t k = 0; k < 64; ++k)
         worst = std::max(worst, std::abs(std::hypot(position[k], position[64 + k] - 50000) - 50000));
       t += 64 * kServoPeriod_ms;

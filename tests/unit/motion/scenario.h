@@ -119,6 +119,13 @@ struct Run {
   }
 };
 
+/// start, start + period, ...
+inline std::vector<double> times(double start_ms, double period_ms, int count) {
+  std::vector<double> t;
+  for (int k = 0; k < count; ++k) t.push_back(start_ms + k * period_ms);
+  return t;
+}
+
 /// Adds everything, ends the sequence, samples it all.
 inline Run run(const PipelineConfig& config, const Program& program, const AxisVector& start = {}, double period_ms = kServoPeriod_ms) {
   Run result;
@@ -135,7 +142,7 @@ inline Run run(const PipelineConfig& config, const Program& program, const AxisV
   const int count = static_cast<int>(std::ceil(result.end_ms / period_ms)) + 1;
   const std::size_t motors = config.map.motors.size();
   std::vector<double> position(motors * static_cast<std::size_t>(count)), velocity(position.size());
-  pipeline.sample(0, period_ms, count, position, velocity);
+  pipeline.sample(times(0, period_ms, count), position, velocity);
   for (std::size_t m = 0; m < motors; ++m) {
     const auto row = static_cast<std::ptrdiff_t>(m) * count;
     result.position.emplace_back(position.begin() + row, position.begin() + row + count);

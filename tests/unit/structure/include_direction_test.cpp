@@ -27,7 +27,7 @@ const std::vector<Rule>& rules() {
       {"runtime/tool/", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "nlohmann/", "CLI/", "Eigen/", "unistd.h", "poll.h"}},
       {"runtime/pmac_run.cpp", {"runtime/", "compiler/", "kinematics/"}, {"fmt/", "CLI/", "unistd.h"}},
       {"runtime/pmac_silverlode.cpp", {"runtime/"}, {}},
-      {"runtime/gather/", {"runtime/"}, {"fmt/", "nlohmann/", "unistd.h", "sys/", "fcntl.h"}},
+      {"runtime/gather/", {"runtime/"}, {"fmt/", "nlohmann/", "unistd.h", "sys/", "fcntl.h", "immintrin.h"}},
       {"runtime/", {"runtime/", "kinematics/", "compiler/bytecode/"}, {"fmt/", "Eigen/"}},
   };
   return table;
