@@ -345,8 +345,9 @@ SYNC_DECREMENT : '--=' ;
 IO_POINTER : [usfdiUSFDI] '.' (I O | U S E R) ([:.] (HEX | DIGIT+) ('.' DIGIT+)*)? ;
 
 WORD : [A-Za-z_] [A-Za-z0-9_]* ;
+/// The dot of 1..3 is given back by the word lexer: with a predicate here ANTLR's runtime would lose some memory at every number.
 NUMBER
-  : DIGIT+ ('.' {_input->LA(1) != '.'}? DIGIT*)? EXPONENT?
+  : DIGIT+ ('.' DIGIT*)? EXPONENT?
   | '.' DIGIT+ EXPONENT?
   | HEX
   ;

@@ -99,9 +99,13 @@ runtime::RunLimits limits(const RunOptions& options, Budget& budget) {
 
 /// False: what went to standard output is not whole, which is said.
 bool flush_output() {
-  if (std::ferror(stdout) == 0 && std::fflush(stdout) == 0) return true;
-  std::fprintf(stderr, "pmac-run: cannot write standard output%s%s\n", errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : "");
-  return false;
+  try {
+    runtime::flush_standard_output();
+    return true;
+  } catch (const runtime::OutputError& e) {
+    std::fprintf(stderr, "pmac-run: %s\n", e.what());
+    return false;
+  }
 }
 
 /// Says why a run that did not come to its own end was ended.
@@ -243,7 +247,11 @@ int main(int argc, char** argv) {
     RunOptions options;
     if (const auto code = parse_options(argc, argv, options)) return *code;
     if (options.robots.size() == 1 && options.robots[0] == "list") return list_robots();
-    if (options.drive == "list") return std::fputs(drives::drive_list().c_str(), stdout) < 0 ? kExitUsage : kExitOk;
+    if (options.drive == "list") {
+      std::fputs(drives::drive_list().c_str(), stdout);
+      runtime::flush_standard_output();
+      return kExitOk;
+    }
     if (const std::string file = unknown_ending(options); !file.empty()) {
       std::fprintf(stderr, "pmac-run: %s: unknown ending; tables are .csv, .npz or .txt, pictures .svg, .png or .html\n", file.c_str());
       return kExitUsage;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
 #include "compiler/source/format.h"
@@ -40,23 +39,6 @@ struct FmtArguments {
 /// What became of a file.
 enum class Outcome { kSame, kChanged, kRefused };
 
-/// Under another name first, so that the file is whole at every moment; it keeps its permissions, and links stay links.
-void replace_file(const std::string& name, const std::string& text) {
-  std::error_code error;
-  const fs::path target = fs::canonical(name, error);
-  if (error) throw UsageError(fmt::format("cannot write {}", name));
-  const fs::path temporary = target.string() + fmt::format(".{}.tmp", ::getpid());
-  std::ofstream stream(temporary, std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (stream) fs::permissions(temporary, fs::status(target).permissions(), error);
-  if (stream && !error) fs::rename(temporary, target, error);
-  if (stream && !error) return;
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  throw UsageError(fmt::format("cannot write {}", name));
-}
-
 void print_problems(const std::string& name, const std::string& text, const std::vector<style::Problem>& problems) {
   source::SourceManager sources;
   const std::int32_t file = sources.add_file(name, text);
@@ -83,7 +65,7 @@ Outcome format_file(const std::string& name, ProjectNames& project, const FmtArg
   const std::string& result = refused ? text : formatted.text;
   if (arguments.diff) std::cout << style::unified_diff(shown, text, result);
   else if (!arguments.check && (name == "-" || arguments.to_stdout)) std::cout << result;
-  else if (!arguments.check && result != text) replace_file(name, result);
+  else if (!arguments.check && result != text) write_file(name, result);
   if (refused) return Outcome::kRefused;
   return result == text ? Outcome::kSame : Outcome::kChanged;
 }

@@ -1,15 +1,17 @@
 #include "compiler/tool/inputs.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <optional>
 
 #include "compiler/project/project.h"
 #include "compiler/tool/options.h"
+#include "compiler/tool/temporary_file.h"
 
 namespace pmac::pmacc {
 namespace {
@@ -26,19 +28,37 @@ void add_project(const std::string& name, compiler::Session& session, std::vecto
 
 }  // namespace
 
+namespace {
+
+/// What stands in a stream; nothing where that is more than a place in a text can count.
+std::optional<std::string> text_of(std::istream& stream, std::string text) {
+  char buffer[65536];
+  while (stream.read(buffer, sizeof buffer), stream.gcount() > 0) {
+    text.append(buffer, static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kLongestInput) return std::nullopt;
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string read_file(const std::string& name) {
-  if (name == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  const std::string too_long = fmt::format("cannot read {}: it is longer than {} MiB", name == "-" ? "standard input" : name, kLongestInput >> 20);
+  if (name == "-") {
+    if (auto text = text_of(std::cin, {})) return std::move(*text);
+    throw UsageError(too_long);
+  }
   std::error_code error;
   if (std::filesystem::is_directory(name, error)) throw UsageError(fmt::format("cannot read {}: it is a directory", name));
   std::ifstream stream(name, std::ios::binary);
   if (!stream) throw UsageError(fmt::format("cannot read {}", name));
   std::string text;
   const auto size = std::filesystem::file_size(name, error);
-  if (!error) text.reserve(size);
-  char buffer[65536];
-  while (stream.read(buffer, sizeof buffer), stream.gcount() > 0) text.append(buffer, static_cast<std::size_t>(stream.gcount()));
+  if (!error && size <= kLongestInput) text.reserve(size);
+  auto read = text_of(stream, std::move(text));
+  if (!read) throw UsageError(too_long);
   if (stream.bad()) throw UsageError(fmt::format("cannot read {}", name));
-  return text;
+  return std::move(*read);
 }
 
 std::vector<compiler::InputFile> read_inputs(const std::vector<std::string>& names, compiler::Session& session) {
@@ -58,10 +78,11 @@ namespace {
 
 /// A pipe or a device stays what it is: it is written to, and not replaced.
 void write_to_device(const std::string& name, const std::function<void(const ByteWriter&)>& content) {
+  errno = 0;
   std::ofstream stream(name, std::ios::binary);
-  content([&](std::string_view bytes) { stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
-  stream.close();
-  if (!stream) throw UsageError(fmt::format("cannot write {}", name));
+  content([&](std::string_view bytes) { if (stream) stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+  if (stream) stream.close();
+  if (!stream) throw UsageError(fmt::format("cannot write {}{}{}", name, errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : ""));
 }
 
 }  // namespace
@@ -72,16 +93,9 @@ void write_file(const std::string& name, const std::function<void(const ByteWrit
   const std::string target = error ? name : known.string();
   const bool exists = !error;
   if (exists && !std::filesystem::is_regular_file(target)) return write_to_device(name, content);
-  const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
-  std::ofstream stream(temporary, std::ios::binary);
-  content([&](std::string_view bytes) { stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
-  stream.close();
-  error.clear();
-  if (stream && exists) std::filesystem::permissions(temporary, std::filesystem::status(target).permissions(), error);
-  if (stream && !error) std::filesystem::rename(temporary, target, error);
-  if (stream && !error) return;
-  std::filesystem::remove(temporary, error);
-  throw UsageError(fmt::format("cannot write {}", name));
+  TemporaryFile file(target);
+  content([&](std::string_view bytes) { file.write(bytes); });
+  if (const std::string reason = file.commit(); !reason.empty()) throw UsageError(fmt::format("cannot write {}: {}", name, reason));
 }
 
 void refuse_to_overwrite(const std::vector<std::string>& sources, const std::string& output) {

@@ -10,7 +10,9 @@
 
 namespace pmac::pmacc {
 
-/// Text of a file, or of standard input for "-". Throws UsageError when it cannot be read.
+inline constexpr std::size_t kLongestInput = std::size_t{1} << 30;   // bytes of one file
+
+/// Text of a file, or of standard input for "-". Throws UsageError when it cannot be read or is longer than kLongestInput.
 std::string read_file(const std::string& name);
 
 /// The files of the command line in load order, projects by their files. What is wrong inside of a project goes to the session,

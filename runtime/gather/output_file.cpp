@@ -31,6 +31,17 @@ bool is_device_or_pipe(const std::string& path) {
 
 }  // namespace
 
+void flush_standard_output() {
+  const bool lost = std::ferror(stdout) != 0;
+  errno = 0;
+  if (lost) {  // what was the matter is asked by one more character
+    std::clearerr(stdout);
+    std::fputc('\n', stdout);
+  }
+  const bool fails = std::fflush(stdout) != 0;
+  if (lost || fails) throw OutputError("cannot write standard output" + (fails && errno != 0 ? ": " + std::string(std::strerror(errno)) : std::string()));
+}
+
 OutputFile::OutputFile(const std::string& path) : path_(path), buffer_(kBufferBytes) {
   if (is_device_or_pipe(path)) {
     descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);

@@ -17,6 +17,9 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What was printed has arrived. Throws OutputError where some of it has not, with the reason where the stream still knows it.
+void flush_standard_output();
+
 class OutputFile {
  public:
   /// Throws OutputError when the file cannot be created.

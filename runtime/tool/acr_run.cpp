@@ -14,6 +14,7 @@
 #include "runtime/acr1000/image.h"
 #include "runtime/acr1000/path_lookahead.h"
 #include "runtime/acr1000/print.h"
+#include "runtime/gather/output_file.h"
 #include "runtime/motion/print.h"
 #include "runtime/tool/acr_cards.h"
 #include "runtime/tool/acr_console.h"
@@ -345,10 +346,8 @@ int CardRun::finish(const acr1000::SystemOutcome& outcome, double wall_s) {
   if (options_.stats) std::fputs(report_->text(result, wall_s).c_str(), out);
   if (options_.check_limits) std::fputs(report_->limit_text(result).c_str(), out);
   if (options_.json != JsonDetail::kNone) std::fputs(report_->json(result, options_.json).c_str(), stdout);
-  if (std::fflush(stdout) != 0 || !written) {
-    if (written) std::perror("pmac-run: standard output");
-    return kExitUsage;
-  }
+  runtime::flush_standard_output();
+  if (!written) return kExitUsage;
   const bool kept = std::all_of(result.limits.begin(), result.limits.end(), [](const auto& row) { return row.keeps_limits(); });
   const int code = exit_code(outcome);
   return code == kExitOk && !kept ? kExitFault : code;

@@ -67,15 +67,40 @@ class LineReader {
 /// What a line does to buffers: the words open and close outside of comments and texts.
 struct BufferWords { bool opens = false, closes = false; };
 
-BufferWords buffer_words(std::string line) {
-  static const std::regex kNoise(R"re("(\\.|[^"\\])*"|/\*.*?\*/|//.*$)re");
-  static const std::regex kWord(R"re((^|[^A-Za-z0-9_.])(open|close)(?![A-Za-z0-9_.\[(=]))re", std::regex::icase);
-  line = std::regex_replace(line, kNoise, " ");
+bool is_word_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
+
+/// Behind the text, comment or single character that stands at `at`.
+std::size_t behind_noise(std::string_view line, std::size_t at) {
+  const std::string_view rest = line.substr(at);
+  if (rest.starts_with("//")) return line.size();
+  if (rest.starts_with("/*")) return rest.find("*/", 2) == std::string_view::npos ? at + 1 : at + rest.find("*/", 2) + 2;
+  if (rest.front() != '"') return at + 1;
+  for (std::size_t i = at + 1; i < line.size(); ++i) {
+    if (line[i] == '"') return i + 1;
+    if (line[i] == '\\') ++i;
+  }
+  return at + 1;   // a text that does not end
+}
+
+bool is_word(std::string_view word, std::string_view wanted) {
+  return std::equal(word.begin(), word.end(), wanted.begin(), wanted.end(), [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+BufferWords buffer_words(std::string_view line) {
   BufferWords words;
-  for (auto word = std::sregex_iterator(line.begin(), line.end(), kWord); word != std::sregex_iterator(); ++word) {
-    const bool opens = std::tolower(static_cast<unsigned char>((*word)[2].str()[0])) == 'o';
-    words.opens = opens || words.opens;
-    words.closes = !opens;  // the last word decides
+  for (std::size_t at = 0; at < line.size();) {
+    if (!is_word_part(line[at])) {
+      at = behind_noise(line, at);
+      continue;
+    }
+    const std::size_t begin = at;
+    while (at < line.size() && is_word_part(line[at])) ++at;
+    const bool goes_on = at < line.size() && (line[at] == '[' || line[at] == '(' || line[at] == '=');
+    const std::string_view word = line.substr(begin, at - begin);
+    const bool opens = is_word(word, "open"), closes = is_word(word, "close");
+    if (goes_on || (!opens && !closes)) continue;
+    words.opens = words.opens || opens;
+    words.closes = closes;  // the last word decides
   }
   return words;
 }

@@ -1,4 +1,5 @@
 #include "runtime/tool/kin_check.h"
+#include "runtime/gather/output_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -326,10 +327,7 @@ int check_kinematics(const RunOptions& options, runtime::Machine& machine) {
   if (json) std::fputs(kin_check_json(results).c_str(), stdout);
   for (const KinCheckResult& result : results)
     if (!json) std::fputs(kin_check_text(result).c_str(), stdout);
-  if (std::fflush(stdout) != 0) {
-    std::perror("pmac-run: standard output");
-    return kExitUsage;
-  }
+  runtime::flush_standard_output();
   const bool ok = std::all_of(results.begin(), results.end(), [](const KinCheckResult& r) { return r.ok(); });
   return ok && !machine.any_refused() ? kExitOk : kExitFault;
 }

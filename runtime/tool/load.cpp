@@ -104,7 +104,12 @@ bool read_file(const std::string& name, std::string& bytes) {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), std::fclose);
   if (!file) return false;
   char buffer[65536];
-  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file.get())) > 0;) bytes.append(buffer, n);
+  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file.get())) > 0;) {
+    bytes.append(buffer, n);
+    if (bytes.size() <= kLongestInput) continue;
+    errno = EFBIG;
+    return false;
+  }
   return std::ferror(file.get()) == 0;
 }
 

@@ -25,7 +25,9 @@ runtime::OnlineCompiler online_compiler(compiler::Session& session, ErrorPlace* 
 /// Lines of the session's sources by file name; where a name was used more than once, of the last text of that name.
 std::function<std::optional<std::string>(const std::string& file, int line)> source_lines(const compiler::Session& session);
 
-/// The file's bytes; false with errno where it cannot be read.
+inline constexpr std::size_t kLongestInput = std::size_t{1} << 30;   // bytes of one file
+
+/// The file's bytes; false with errno where it cannot be read or is longer than kLongestInput.
 bool read_file(const std::string& name, std::string& bytes);
 
 }  // namespace pmac::tool

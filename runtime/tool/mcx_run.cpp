@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "compiler/source/format.h"
+#include "runtime/gather/output_file.h"
 #include "runtime/tool/load.h"
 #include "runtime/tool/mcx_output.h"
 
@@ -156,10 +157,7 @@ int run_register_script(const RunOptions& options) {
   const auto [code, status] = outcome(*chip, finished, options);
   if (options.stats) std::fputs(pulse_text(*chip).c_str(), options.json == JsonDetail::kNone ? stdout : stderr);
   if (options.json != JsonDetail::kNone) std::fputs(pulse_json(*chip, name, status, options.json).c_str(), stdout);
-  if (std::fflush(stdout) != 0) {
-    std::perror("pmac-run: standard output");
-    return kExitUsage;
-  }
+  runtime::flush_standard_output();
   return code;
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinematics/robot.h"
+#include "runtime/gather/output_file.h"
 #include "runtime/tool/load.h"
 
 namespace pmac::tool {
@@ -136,6 +137,7 @@ int list_robots() {
     for (const auto& [name, standard] : settings.standards()) fmt::print("  {}={}\n", name, fmt::join(standard, "/"));
   }
   fmt::print("every robot: motor_mu=1 (motor units per mm or degree of a joint; one number, or one a joint)\n");
+  runtime::flush_standard_output();
   return kExitOk;
 }
 

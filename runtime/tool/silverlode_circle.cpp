@@ -196,7 +196,7 @@ int run_circle(const SilverlodeOptions& options) {
   observer.finish();
   if (!options.table.empty()) write_sheet(report.sheet, options.table);
   if (!options.frames.empty()) write_frames(frames_of(options, table, link), options.frames);
-  if (std::fflush(stdout) != 0) throw runtime::OutputError("standard output cannot be written");
+  runtime::flush_standard_output();
   return failed(link) ? kExitFault : kExitOk;
 }
 
@@ -213,6 +213,7 @@ int run_decode(const SilverlodeOptions& options) {
     }
     code = std::max(code, decode_text(read_stream(name == "-" ? std::cin : file), name == "-" ? "standard input" : name, options.network.commands));
   }
+  runtime::flush_standard_output();
   return code;
 }
 

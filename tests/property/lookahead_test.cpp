@@ -22,13 +22,12 @@ void keeps_limits_and_path(const LookaheadCase& run, double path_mu = 1) {
   CHECK(run.away_mu < path_mu);  // 1000 mu are a mm
 }
 
-/// slower: the part of the optimum that is lost, where it is known to be more than the 1.003 of the rule.
-LookaheadCase is_optimal(const std::string& name, const Machine& machine, const std::string& lines, double slower = 1.003, double path_mu = 1) {
+LookaheadCase is_optimal(const std::string& name, const Machine& machine, const std::string& lines, double path_mu = 1) {
   INFO(name);
   const LookaheadCase run = run_lookahead_case(program_on(machine, lines), "&1 b1r", kPoints);
   keeps_limits_and_path(run, path_mu);
   INFO("time " << run.time_ms << " ms, optimum " << run.optimum_ms << " ms");
-  CHECK(run.time_ms <= slower * run.optimum_ms + run.segment_ms);
+  CHECK(run.time_ms <= 1.003 * run.optimum_ms + run.segment_ms);
   CHECK(run.time_ms >= 0.998 * run.optimum_ms);  // the solver is slow by as much at very small blends
   return run;
 }
@@ -105,12 +104,12 @@ TEST_CASE("lookahead is optimal: ramps without S curve", "[property][lookahead]"
     is_optimal(fmt::format("oval ta{}", ta_ms), {}, speed_words(200, ta_ms) + oval());
     is_optimal(fmt::format("contour ta{}", ta_ms), {}, speed_words(50, ta_ms) + contour());
     is_optimal(fmt::format("corners ta{}", ta_ms), {}, speed_words(150, ta_ms) + corners());
-    is_optimal(fmt::format("reversals ta{}", ta_ms), {}, speed_words(150, ta_ms) + reversals(), 1.006);
+    is_optimal(fmt::format("reversals ta{}", ta_ms), {}, speed_words(150, ta_ms) + reversals());
   }
 }
 
 TEST_CASE("lookahead is optimal: helix, planes, lines in space", "[property][lookahead]") {
-  is_optimal("helix", in_space(), speed_words(200) + "inc\nlinear X20\ncircle2 X0 Y0 I0 J10 Z5\ncircle2 X0 Y0 I0 J10 Z5\nlinear X20\n", 1.004);
+  is_optimal("helix", in_space(), speed_words(200) + "inc\nlinear X20\ncircle2 X0 Y0 I0 J10 Z5\ncircle2 X0 Y0 I0 J10 Z5\nlinear X20\n");
   is_optimal("ZX and YZ", in_space(), speed_words(100) + "normal J-1\ninc\nlinear X10\ncircle1 X5 Z5 I0 K5\nlinear Z10\nnormal I-1\ncircle1 Y6 Z6 J6 K0\nlinear Y5\n");
   is_optimal("lines", in_space(), speed_words(150, 20) + "linear X20 Y3 Z-7\nlinear X-5 Y12 Z2\nlinear X-6 Y12 Z9\nlinear X9 Y-4 Z0\nlinear X0 Y0 Z0\n");
 }
@@ -130,16 +129,16 @@ TEST_CASE("lookahead is optimal: motors of very different limits", "[property][l
   for (const double ratio : {10.0, 100.0}) {
     Machine machine;
     machine.limits = {{500, 1}, {500 / std::sqrt(ratio), ratio}};
-    is_optimal(fmt::format("oval, 1:{}", ratio), machine, speed_words(200, 25) + oval(), 1.005);
-    is_optimal(fmt::format("contour, 1:{}", ratio), machine, speed_words(50) + contour(), 1.006);
+    is_optimal(fmt::format("oval, 1:{}", ratio), machine, speed_words(200, 25) + oval());
+    is_optimal(fmt::format("contour, 1:{}", ratio), machine, speed_words(50) + contour());
     Machine units;
     units.definitions = {"1000X", fmt::format("{}Y", 1000 * ratio)};
     units.limits = {{500, 1}, {500 * ratio, 1 / ratio}};
-    is_optimal(fmt::format("oval, units 1:{}", ratio), units, speed_words(200, 25) + oval(), 1.003, ratio);
+    is_optimal(fmt::format("oval, units 1:{}", ratio), units, speed_words(200, 25) + oval(), ratio);
   }
   Machine free;
   free.limits = {{0, 1}, {0, 0}};
-  is_optimal("no limit of Y", free, speed_words(200, 25) + oval(), 1.004);
+  is_optimal("no limit of Y", free, speed_words(200, 25) + oval());
 }
 
 TEST_CASE("lookahead is optimal: very short blocks", "[property][lookahead]") {
@@ -157,7 +156,7 @@ TEST_CASE("lookahead is optimal: random tangent paths", "[property][lookahead]")
     machine.limits = {{500, 0.3 + 1.5 * unit(random)}, {30 + 270 * unit(random), 0.3 + 1.5 * unit(random)}};
     TangentLines path(6 * unit(random));
     for (int i = 0; i < 8; ++i) path.line(0.5 + 19 * unit(random)).arc(0.3 + 15 * unit(random), (unit(random) < 0.5 ? -1 : 1) * (0.1 + 2.4 * unit(random)));
-    is_optimal(fmt::format("seed {}", seed), machine, speed_words(50 + 250 * unit(random)) + path.text(), 1.012);
+    is_optimal(fmt::format("seed {}", seed), machine, speed_words(50 + 250 * unit(random)) + path.text());
   }
 }
 
@@ -176,16 +175,16 @@ TEST_CASE("lookahead: a growing window comes to the optimum from above", "[prope
 }
 
 /// Segments of programmed time that take many times as long when they are executed.
-TEST_CASE("lookahead is within limits and 1 % of the optimum where segments are stretched much", "[property][lookahead]") {
-  is_optimal("oval ta25 ts10", {}, speed_words(200, 25, 10) + oval(), 1.01);
-  is_optimal("contour ta5 ts2", {}, speed_words(50, 5, 2) + contour(), 1.01);
-  is_optimal("corners ta5 ts2", {}, speed_words(150, 5, 2) + corners(), 1.01);
-  is_optimal("reversals ta0 ts20", {}, speed_words(150, 0, 20) + reversals(), 1.01);
-  is_optimal("contour F1000", {}, speed_words(1000) + contour(), 1.01);
-  is_optimal("contour F5000", {}, speed_words(5000) + contour(), 1.01);
-  is_optimal("oval R1 F450", {}, speed_words(450) + oval(6, 1), 1.01);
-  is_optimal("spiral", {}, speed_words(200) + "circle2 X-5 Y0 I10 J0\ncircle1 X20 Y0 I10\n", 1.01);
+TEST_CASE("lookahead is optimal: segments that are stretched much", "[property][lookahead]") {
+  is_optimal("oval ta25 ts10", {}, speed_words(200, 25, 10) + oval());
+  is_optimal("contour ta5 ts2", {}, speed_words(50, 5, 2) + contour());
+  is_optimal("corners ta5 ts2", {}, speed_words(150, 5, 2) + corners());
+  is_optimal("reversals ta0 ts20", {}, speed_words(150, 0, 20) + reversals());
+  is_optimal("contour F1000", {}, speed_words(1000) + contour());
+  is_optimal("contour F5000", {}, speed_words(5000) + contour());
+  is_optimal("oval R1 F450", {}, speed_words(450) + oval(6, 1));
+  is_optimal("spiral", {}, speed_words(200) + "circle2 X-5 Y0 I10 J0\ncircle1 X20 Y0 I10\n");
   Machine slow;
   slow.limits = {{50, 1}, {30, 1}};
-  is_optimal("slow motors", slow, speed_words(200, 25) + oval(), 1.01);
+  is_optimal("slow motors", slow, speed_words(200, 25) + oval());
 }

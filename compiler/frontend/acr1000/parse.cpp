@@ -8,6 +8,7 @@ namespace {
 using Parser = grammar::Acr1000Parser;
 
 constexpr std::size_t kMaxParentheses = 100;  // more would use up the parser's stack
+constexpr std::size_t kMaxTokens = 2000;      // of a line; long ones cost time with the square of their length
 
 /// One message for a line: what stands wrong, and how the command is written. The line is given up then.
 class OneMessage : public antlr4::DefaultErrorStrategy {
@@ -104,6 +105,10 @@ std::unique_ptr<ParsedLine> parse_line(const source::SourceManager& sources, con
   if (!lex_line(sources, place, line->tokens, diagnostics)) return line;
   if (nests_too_deep(line->tokens) || too_many_conditions(line->tokens)) {
     diagnostics.error("ACR-E02", place, "the line is nested deeper than any program needs");
+    return line;
+  }
+  if (line->tokens.size() > kMaxTokens) {
+    diagnostics.error("ACR-E02", place, fmt::format("a line has at most {} words and signs; make several lines of it", kMaxTokens));
     return line;
   }
   line->source = token_source(line->tokens);

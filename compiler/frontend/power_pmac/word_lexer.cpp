@@ -110,19 +110,31 @@ std::unique_ptr<antlr4::Token> WordLexer::nextToken() {
     kind = word.type;
     if (begin + word.length <= next->getStopIndex()) {
       split_end_ = std::max(split_end_, next->getStopIndex() + 1);
-      static_cast<antlr4::CommonToken*>(next.get())->setStopIndex(begin + word.length - 1);
-      setCharPositionInLine(next->getCharPositionInLine() + word.length);
-      _input->seek(begin + word.length);
-      hitEOF = false;  // the word may have reached the end of the text; its rest is still to be read
+      cut(*next, word.length);
     }
     if (kind == T::NAME) declare(text_.substr(begin, word.length));
     if (kind == T::NAME && last_[0] == T::PROG && last_[1] == T::OPEN) names_.programs.emplace(text_.substr(begin, word.length));
   }
+  if (kind == T::NUMBER && begins_range(*next)) cut(*next, next->getStopIndex() - next->getStartIndex());
   if (kind == T::NUMBER) last_number_is_zero_ = text_.substr(next->getStartIndex(), next->getStopIndex() + 1 - next->getStartIndex()) == "0";
   follow(kind, next->getLine());
   last_end_ = next->getStopIndex() + 1;
   last_line_ = next->getLine();
   return next;
+}
+
+/// The 1. of 1..3.
+bool WordLexer::begins_range(const antlr4::Token& number) const {
+  const std::size_t last = number.getStopIndex();
+  return last + 1 < text_.size() && last > number.getStartIndex() && text_[last] == '.' && text_[last + 1] == '.';
+}
+
+/// The token keeps `length` characters; what is behind them is read again.
+void WordLexer::cut(antlr4::Token& token, std::size_t length) {
+  static_cast<antlr4::CommonToken&>(token).setStopIndex(token.getStartIndex() + length - 1);
+  setCharPositionInLine(token.getCharPositionInLine() + length);
+  _input->seek(token.getStartIndex() + length);
+  hitEOF = false;  // the token may have reached the end of the text
 }
 
 WordLexer::Word WordLexer::classify(std::string_view word, std::size_t begin, std::size_t line) {

@@ -40,6 +40,8 @@ class WordLexer : public grammar::PowerPmacLexer {
  private:
   struct Word { std::size_t type; std::size_t length; };
 
+  bool begins_range(const antlr4::Token& number) const;
+  void cut(antlr4::Token& token, std::size_t length);
   Word classify(std::string_view word, std::size_t begin, std::size_t line);
   bool must_be_name(std::string_view word, std::size_t end) const;
   Word split(std::string_view word, std::size_t begin) const;

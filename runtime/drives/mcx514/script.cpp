@@ -109,7 +109,8 @@ std::size_t time_length(std::string_view line) {
 }
 
 bool Reader::begins_item() const {
-  const std::string line = lower(rest_of_line().substr(time_length(rest_of_line())));
+  constexpr std::size_t kLongestWord = 16;   // longer ones are none of the script's
+  const std::string line = lower(rest_of_line().substr(time_length(rest_of_line())).substr(0, kLongestWord));
   const std::string first = line.substr(0, std::min(line.find_first_of(" \t\r;<=:"), line.size()));
   return is_register_like(first) || first == "wait" || first == "read";
 }
