@@ -54,7 +54,8 @@ std::string read_file(const std::string& name) {
   if (!stream) throw UsageError(fmt::format("cannot read {}", name));
   std::string text;
   const auto size = std::filesystem::file_size(name, error);
-  if (!error && size <= kLongestInput) text.reserve(size);
+  if (!error && size > kLongestInput) throw UsageError(too_long);
+  if (!error) text.reserve(size);
   auto read = text_of(stream, std::move(text));
   if (!read) throw UsageError(too_long);
   if (stream.bad()) throw UsageError(fmt::format("cannot read {}", name));

@@ -101,6 +101,11 @@ bool read_file(const std::string& name, std::string& bytes) {
     errno = EISDIR;
     return false;
   }
+  const auto size = std::filesystem::file_size(name, error);
+  if (!error && size > kLongestInput) {
+    errno = EFBIG;
+    return false;
+  }
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), std::fclose);
   if (!file) return false;
   char buffer[65536];

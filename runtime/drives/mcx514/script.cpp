@@ -42,10 +42,13 @@ class Reader {
   void error(std::string text) { problem(true, line_, column(), std::move(text)); }
 
   // Pieces of text, at the present place
-  std::string_view rest_of_line() const { return text_.substr(at_, std::min(text_.find('\n', at_), text_.size()) - at_); }
+  std::string_view rest_of_line() {
+    if (!line_end_ || *line_end_ < at_) line_end_ = std::min(text_.find('\n', at_), text_.size());
+    return text_.substr(at_, *line_end_ - at_);
+  }
   std::string_view word() const;
-  std::string_view visible(std::size_t most = 24) const;
-  bool begins_item() const;
+  std::string_view visible(std::size_t most = 24);
+  bool begins_item();
   static bool has_arrow(std::string_view line);
   static bool holds_write(std::string_view line);
   bool take_arrow();
@@ -62,6 +65,7 @@ class Reader {
 
   std::string_view text_;
   std::size_t at_ = 0, line_start_ = 0;
+  std::optional<std::size_t> line_end_;   // of the line that at_ was in when it was asked for last
   int line_ = 1;
   Script script_;
 };
@@ -92,7 +96,7 @@ std::string_view Reader::word() const {
 }
 
 /// The next few characters, for messages.
-std::string_view Reader::visible(std::size_t most) const {
+std::string_view Reader::visible(std::size_t most) {
   std::string_view text = rest_of_line().substr(0, most);
   while (!text.empty() && (static_cast<unsigned char>(text.back()) >= 0x80 || std::isspace(static_cast<unsigned char>(text.back())))) text.remove_suffix(1);
   return text;
@@ -108,7 +112,7 @@ std::size_t time_length(std::string_view line) {
   return is_time ? end + 1 : 0;
 }
 
-bool Reader::begins_item() const {
+bool Reader::begins_item() {
   constexpr std::size_t kLongestWord = 16;   // longer ones are none of the script's
   const std::string line = lower(rest_of_line().substr(time_length(rest_of_line())).substr(0, kLongestWord));
   const std::string first = line.substr(0, std::min(line.find_first_of(" \t\r;<=:"), line.size()));
