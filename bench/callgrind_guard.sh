@@ -37,9 +37,9 @@ while read -r name command; do
     continue
   fi
   bound=$(bound_of "$name")
-  percent=$(awk -v c="$counted" -v b="${bound:-0}" 'BEGIN { printf "%.1f", b > 0 ? 100 * (c / b - 1) : 100 }')
+  percent=$(awk -v c="$counted" -v b="${bound:-0}" 'BEGIN { printf "%.1f", (b > 0 ? 100 * (c / b - 1) : 100) }')
   printf '%-10s %15s  bound %15s  %s %%\n' "$name" "$counted" "${bound:-none}" "$percent"
-  awk -v p="$percent" -v t=$tolerance_percent 'BEGIN { exit !(p > t) }' && status=1
+  if awk -v p="$percent" -v t=$tolerance_percent 'BEGIN { exit !(p > t) }'; then status=1; fi
 done < "$folder/list"
 [ "$mode" != --record ] || mv "$bounds.new" "$bounds"
 [ $status = 0 ] || echo "more instructions than the bound and $tolerance_percent %: find out why, or record new bounds with ./dev guard --record"

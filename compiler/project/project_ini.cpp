@@ -39,8 +39,11 @@ std::string relative_path(std::string_view path) {
 }
 
 /// The sections of the files that the IDE writes.
-const std::vector<std::string_view> kSections = {"PMAC_PROGRAMS", "PMAC_BUFFERS", "PMAC_SIG",        "PMAC_HARDWARE",  "PMAC_CONFIG",      "PMAC_PROJECT", "PMACMODE",   "CPU_AFFINITY",      "THREAD_PRIORITY",
-                                                 "ETHERCAT",      "IEC61131",     "CUSTOM_CONFIG_FILE", "MACRO_STATIONS", "PROJECT_SETTINGS", "CPLCC",        "CPLCS",      "LINUX_PROGRAMS",    "RTUSRCCODE"};
+const std::vector<std::string_view>& sections() {
+  static const std::vector<std::string_view> kSections = {"PMAC_PROGRAMS", "PMAC_BUFFERS", "PMAC_SIG",        "PMAC_HARDWARE",  "PMAC_CONFIG",      "PMAC_PROJECT", "PMACMODE",   "CPU_AFFINITY",      "THREAD_PRIORITY",
+                                                          "ETHERCAT",      "IEC61131",     "CUSTOM_CONFIG_FILE", "MACRO_STATIONS", "PROJECT_SETTINGS", "CPLCC",        "CPLCS",      "LINUX_PROGRAMS",    "RTUSRCCODE"};
+  return kSections;
+}
 
 class IniReader {
  public:
@@ -68,8 +71,8 @@ class IniReader {
     const std::size_t end = line.find(']');
     if (end == std::string_view::npos) return void(diagnostics_.warning("PM6105", span_of(line), "a section is a name in square brackets: [PMAC_PROGRAMS]"));
     const std::string_view name = line.substr(1, end - 1);
-    if (std::find(kSections.begin(), kSections.end(), name) != kSections.end()) return;
-    const source::Guess near = source::guess_word(name, kSections);
+    if (std::find(sections().begin(), sections().end(), name) != sections().end()) return;
+    const source::Guess near = source::guess_word(name, sections());
     const std::string hint = near.word.empty() ? std::string() : fmt::format("; did you mean [{}]?", near.word);
     diagnostics_.warning("PM6105", span_of(line.substr(0, end + 1)), fmt::format("[{}] is no section that the IDE writes, and is not read{}", name, hint));
   }

@@ -80,7 +80,8 @@ const style::Names& ProjectNames::of_folder(const fs::path& folder, bool with_su
   std::uintmax_t bytes = 0;
   for (const fs::path& file : files) {
     const std::string text = text_of(file);
-    if ((bytes += text.size()) > kMaxBytes) break;
+    bytes += text.size();
+    if (bytes > kMaxBytes) break;
     style::collect_names(text, found->second);
   }
   return found->second;
