@@ -105,7 +105,7 @@ Lookahead::Interval& Lookahead::append_interval(const Stretch& stretch, const St
   next.whole = first_whole_ + wholes_.size() - 1;
   next.stretch = stretch;
   next.speed_ratio2 = start.speed_ratio * start.speed_ratio;
-  next.beta = 0;
+  next.last = {};
   ++wholes_.back().parts;
   known_ms_ += stretch.duration_ms;
   return next;
@@ -125,7 +125,7 @@ void Lookahead::find_limits(Interval& interval) const {
 /// x at the end of interval i, as far as stops ahead tell.
 double Lookahead::end_beta_of(int i, double end_beta) const {
   const auto next = static_cast<std::size_t>(i) + 1;
-  return i + 1 < known() ? intervals_[next].beta * intervals_[next].speed_ratio2 : end_beta;
+  return i + 1 < known() ? intervals_[next].last.x0 * intervals_[next].speed_ratio2 : end_beta;
 }
 
 /// Motion has to stop at both ends of the last interval: in two halves it can move in between.
@@ -149,10 +149,11 @@ void Lookahead::backward(double end_beta) {
   double beta = end_beta;  // of x at the end of interval i
   for (int i = known() - 1; i >= 0; --i) {
     Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    const double start = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2)).x0;
-    if (i < planned_ && start == interval.beta) break;
-    interval.beta = start;
-    beta = start * interval.speed_ratio2;
+    const RateCourse last = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2));
+    const bool is_same = i < planned_ && last.x0 == interval.last.x0;
+    interval.last = last;
+    if (is_same) break;
+    beta = last.x0 * interval.speed_ratio2;
   }
   planned_ = known();
 }
@@ -160,12 +161,13 @@ void Lookahead::backward(double end_beta) {
 void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   runtime::poll_interruption();
   const Interval& interval = intervals_.front();
-  if (at_start_) rate2_ = interval.beta;
+  if (at_start_) rate2_ = interval.last.x0;
   at_start_ = false;
   const double allowed = std::min(end_beta_of(0, end_beta), interval.limits.max_end_rate2);
-  const RateCourse course = interval.limits.largest_end(rate2_, allowed);
+  const bool slows_down = rate2_ == interval.last.x0 && rate2_ > 0 && !interval.limits.is_even;
+  const RateCourse course = slows_down ? interval.last : interval.limits.largest_end(rate2_, allowed);
   const double ratio2 = known() > 1 ? intervals_[1].speed_ratio2 : 1;
-  const bool meets_beta = course.x1 == end_beta_of(0, end_beta) && (rate2_ < interval.beta || interval.beta == interval.start_bound);
+  const bool meets_beta = course.x1 == end_beta_of(0, end_beta) && (rate2_ < interval.last.x0 || interval.last.x0 == interval.start_bound);
   emit(interval, course, meets_beta, out);
   rate2_ = course.x1 / ratio2;
   known_ms_ -= interval.stretch.duration_ms;
@@ -228,12 +230,13 @@ void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::v
 /// False where that is no faster; nothing is appended then.
 bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) {
   constexpr int kSteps = 20;
+  constexpr double kLittle = 1e-3;
   const Whole& whole = whole_of(interval);
   const double from_ms = interval.stretch.from_ms, whole_ms = interval.stretch.duration_ms;
   const RateLimits& limits = interval.limits;
   double low_ms = 0, low_over = x0 - limits.largest_start(limits.max_start_rate2, x1).x0;         // what can be reached over what may be: below 0 at the start,
   double high_ms = whole_ms, high_over = limits.largest_end(x0, limits.max_end_rate2).x1 - x1;  // above 0 at the end
-  if (low_over >= 0 || high_over <= 0) return false;
+  if (low_over >= -kLittle * x0 || high_over <= kLittle * x1) return false;
   double at_ms = 0;
   RateCourse rise, fall;
   bool was_low = false;

@@ -50,7 +50,7 @@ class Lookahead : public TimeLaw {
     Stretch stretch{0, 0};      // of its segment
     double speed_ratio2 = 1;    // x at the end of the interval before is this times x at its start
     double start_bound = 1;     // of x at its start: limits of both neighbours, 0 where motion has to stop
-    double beta = 0;            // of x at its start
+    RateCourse last;            // beta at its start, and how motion slows down from there
     RateLimits limits;
   };
   struct Start { double speed_ratio, max_rate; bool stops; };   // of a segment

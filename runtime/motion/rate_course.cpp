@@ -16,12 +16,13 @@ constexpr double kMostBend = 0.75;
 constexpr double kRounding = 1e-11;
 constexpr int kMostSteps = 200, kMostMotors = 32;
 
-/// normal . (x0, x1, bend) <= bound.
-struct Bound { double x0, x1, bend, bound; };
-
-struct Cross { double x0, x1, bend; };
-Cross cross(const Bound& a, const Bound& b) { return {a.x1 * b.bend - a.bend * b.x1, a.bend * b.x0 - a.x0 * b.bend, a.x0 * b.x1 - a.x1 * b.x0}; }
-double dot(const Bound& a, const Cross& b) { return a.x0 * b.x0 + a.x1 * b.x1 + a.bend * b.bend; }
+/// A direction of courses, or the normal of a bound on them.
+struct Direction {
+  double x0, x1, bend;
+  double size() const { return std::abs(x0) + std::abs(x1) + std::abs(bend); }
+  double dot(const Direction& b) const { return x0 * b.x0 + x1 * b.x1 + bend * b.bend; }
+  void add(double times, const Direction& b) { x0 += times * b.x0, x1 += times * b.x1, bend += times * b.bend; }
+};
 
 /// All that bounds a course but the x that are asked for at its ends.
 class CourseBounds {
@@ -30,29 +31,27 @@ class CourseBounds {
     for (const MotorShare& motor : limits.motors) add_motor(motor);
   }
 
-  /// What the course exceeds most. False where that is nothing.
-  bool find_exceeded(const RateCourse& v, Bound& found) const {
-    double most = kRounding;
-    const auto consider = [&](double excess, const Bound& bound) {
-      if (excess > most) most = excess, found = bound;
-    };
+  /// The normal of the bound that the course exceeds most, and by how much. False where that is nothing.
+  bool find_exceeded(const Direction& course, Direction& normal, double& excess) const {
+    double most = kRounding, value_there = 0;
+    int there = -1;
     for (int i = 0; i < count_; ++i) {
-      const Band& b = bands_[i];
-      const double value = b.x0 * v.x0 + b.x1 * v.x1 + b.bend * v.bend;
-      if (std::abs(value) - full_ <= most) continue;
-      const double side = value > 0 ? 1 : -1;
-      most = std::abs(value) - full_;
-      found = {side * b.x0, side * b.x1, side * b.bend, full_};
+      const double value = bands_[i].dot(course), over = std::abs(value) - full_;
+      if (over > most) most = over, value_there = value, there = i;
     }
-    consider(std::abs(v.bend) - kMostBend * (v.x0 + v.x1), {-kMostBend, -kMostBend, v.bend > 0 ? 1.0 : -1.0, 0});
-    consider(v.x0 + v.x1 - v.bend - most_at_ends_, {1, 1, -1, most_at_ends_});   // at half way x is below a line between the highest
-    consider(-v.x1, {0, -1, 0, 0});
-    return most > kRounding;
+    const double sum = course.x0 + course.x1, bend_over = std::abs(course.bend) - kMostBend * sum, middle_over = sum - course.bend - most_at_ends_;
+    excess = std::max({most, bend_over, middle_over, -course.x1});
+    if (excess == kRounding) return false;
+    if (excess == most) {
+      const double side = value_there > 0 ? 1 : -1;
+      normal = {side * bands_[there].x0, side * bands_[there].x1, side * bands_[there].bend};
+    } else if (excess == bend_over) normal = {-kMostBend, -kMostBend, course.bend > 0 ? 1.0 : -1.0};
+    else if (excess == middle_over) normal = {1, 1, -1};   // at half way x is below a line between the highest
+    else normal = {0, -1, 0};
+    return true;
   }
 
  private:
-  struct Band { double x0, x1, bend; };   // |...| <= full
-
   /// Bernstein coefficients of q'' x + q' a: q'' by e0, e1; q' by d0, dm, d1; x by x0, xm, x1; a by a0, a1 = (x1 - x0 -+ bend)/2 and
   /// xm = x0 + a0. All over the part as a unit of time.
   void add_motor(const MotorShare& motor) {
@@ -66,49 +65,60 @@ class CourseBounds {
 
   double full_, most_at_ends_;
   int count_ = 0;
-  std::array<Band, 4 * kMostMotors> bands_;
+  std::array<Direction, 4 * kMostMotors> bands_;   // |band . course| <= full
 };
 
-/// Three bounds that meet in a course; `worth` is what moving one of them by 1 gains. Bounds that are worth nothing go first.
+/// Three bounds that meet in a course: x0 and x1 as asked for, and a bend of 0, which only says where to begin and goes first. Edges
+/// lead along two of the bounds away from the third; `worth` is what moving that bound by 1 gains.
 class Vertex {
  public:
-  Vertex(const Bound& a, double a_worth, const Bound& b, double b_worth, const Bound& c) : active_{a, b, c}, worth_{a_worth, b_worth, 0} {}
+  Vertex(double x0, double x0_worth, double x1, double x1_worth) : course_{x0, x1, 0}, edges_{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, worth_{x0_worth, x1_worth, 0} {}
 
-  RateCourse course() const {
-    const Cross n0 = cross(active_[1], active_[2]), n1 = cross(active_[2], active_[0]), n2 = cross(active_[0], active_[1]);
-    const double inverse = 1 / dot(active_[0], n0), b0 = active_[0].bound * inverse, b1 = active_[1].bound * inverse, b2 = active_[2].bound * inverse;
-    return {b0 * n0.x0 + b1 * n1.x0 + b2 * n2.x0, b0 * n0.x1 + b1 * n1.x1 + b2 * n2.x1, b0 * n0.bend + b1 * n1.bend + b2 * n2.bend};
-  }
+  const Direction& course() const { return course_; }
 
-  /// Takes another bound in for one that can go. may_go: the first one may, too. False: there is no course within all of them.
-  bool take_in(const Bound& other, bool first_may_go) {
-    constexpr double kNothing = 1e-13;
-    const double inverse = 1 / dot(active_[0], cross(active_[1], active_[2]));
-    const double part[3] = {dot(other, cross(active_[1], active_[2])) * inverse, dot(other, cross(active_[2], active_[0])) * inverse,
-                            dot(other, cross(active_[0], active_[1])) * inverse};
+  /// Takes another bound in, which is exceeded, for one that can go. first: of those that may. False: no course is within all of them.
+  bool take_in(const Direction& normal, double excess, int first) {
+    constexpr double kNothing = 1e-9;   // of what it could be: rounding
+    double part[3];
+    for (int k = 0; k < 3; ++k) {
+      part[k] = normal.dot(edges_[k]);
+      if (std::abs(part[k]) <= kNothing * normal.size() * edges_[k].size()) part[k] = 0;
+    }
     int out = -1;
     double least = 0;
-    for (int k = first_may_go ? 0 : 1; k < 3; ++k) {
-      const bool is_free = k == free_;   // it only says where to begin, and may go either way
-      const double by = is_free ? std::abs(part[k]) : part[k];
-      if (by <= kNothing) continue;
-      const double ratio = is_free ? -1 : worth_[k] / by;
-      if (out < 0 || ratio < least || (ratio == least && by > part[out])) out = k, least = ratio;
+    for (int k = first; k < 3; ++k) {
+      if (part[k] <= 0) continue;
+      const double ratio = worth_[k] / part[k];
+      if (out < 0 || ratio < least || (ratio == least && part[k] > part[out])) out = k, least = ratio;
     }
+    if (has_free_ && part[2] != 0) out = 2, has_free_ = false;
     if (out < 0) return false;
-    const double step = worth_[out] / part[out];
-    for (int k = 0; k < 3; ++k) worth_[k] -= step * part[k];
+    const double inverse = 1 / part[out], step = worth_[out] * inverse;
+    course_.add(-excess * inverse, edges_[out]);
+    edges_[out] = {inverse * edges_[out].x0, inverse * edges_[out].x1, inverse * edges_[out].bend};
+    for (int k = 0; k < 3; ++k) {
+      if (k == out) continue;
+      edges_[k].add(-part[k], edges_[out]);
+      worth_[k] -= step * part[k];
+    }
     worth_[out] = step;
-    active_[out] = other;
-    if (out == free_) free_ = -1;
     return true;
   }
 
  private:
-  Bound active_[3];
+  Direction course_, edges_[3];
   double worth_[3];
-  int free_ = 2;
+  bool has_free_ = true;
 };
+
+/// False: none is within the bounds.
+bool find_course(const CourseBounds& bounds, Vertex& vertex, int first) {
+  Direction normal;
+  double excess;
+  for (int step = 0; bounds.find_exceeded(vertex.course(), normal, excess); ++step)
+    if (step == kMostSteps || !vertex.take_in(normal, excess, first)) return false;
+  return true;
+}
 
 }  // namespace
 
@@ -118,15 +128,9 @@ RateCourse RateLimits::largest_start(double x0_max, double x1_max) const {
   if (is_even) return {std::min(start_max, x1_max + even_change), x1_max, 0};
   if (allows_full_rate && start_max >= 1 && x1_max >= 1) return {1, 1, 0};
   const CourseBounds bounds(*this, kPlanned);
-  Vertex vertex({1, 0, 0, start_max}, 1, {0, 1, 0, x1_max}, kEndMatters, {0, 0, 1, 0});
-  RateCourse course{start_max, x1_max, 0};
-  Bound exceeded;
-  for (int step = 0; bounds.find_exceeded(course, exceeded); ++step) {
-    if (step == kMostSteps || !vertex.take_in(exceeded, true)) return {0, 0, 0};
-    course = vertex.course();
-  }
-  course.x0 = std::max(0.0, course.x0);
-  return course;
+  Vertex vertex(start_max, 1, x1_max, kEndMatters);
+  if (!find_course(bounds, vertex, 0)) return {0, 0, 0};
+  return {std::max(0.0, vertex.course().x0), vertex.course().x1, vertex.course().bend};
 }
 
 RateCourse RateLimits::largest_end(double x0, double x1_max) const {
@@ -134,16 +138,9 @@ RateCourse RateLimits::largest_end(double x0, double x1_max) const {
   if (is_even) return {x0, std::min(end_max, x0 + even_change), 0};
   if (allows_full_rate && x0 >= 1 && end_max >= 1) return {1, 1, 0};
   const CourseBounds bounds(*this, kCarriedOut);
-  Vertex vertex({1, 0, 0, x0}, 0, {0, 1, 0, end_max}, 1, {0, 0, 1, 0});
-  RateCourse course{x0, end_max, 0};
-  Bound exceeded;
-  for (int step = 0; bounds.find_exceeded(course, exceeded); ++step) {
-    if (step == kMostSteps || !vertex.take_in(exceeded, false)) return {x0, std::min(x0, end_max), 0};
-    course = vertex.course();
-    course.x0 = x0;
-  }
-  course.x1 = std::clamp(course.x1, 0.0, end_max);
-  return course;
+  Vertex vertex(x0, 0, end_max, 1);
+  if (!find_course(bounds, vertex, 1)) return {x0, std::min(x0, end_max), 0};
+  return {x0, std::clamp(vertex.course().x1, 0.0, end_max), vertex.course().bend};
 }
 
 }  // namespace pmac::motion
