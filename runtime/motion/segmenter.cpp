@@ -17,7 +17,8 @@ constexpr double kMaxTurn_rad = 0.1;
 constexpr double kMinGap_ms = 1e-3;
 /// Differences of a kinematic routine: short beside a segment, and long beside what an iterating routine leaves undecided.
 constexpr double kLongestDifference_ms = 1, kDifferencesPerSegment = 8;
-constexpr double kNodesThatTell = 4;
+/// Nodes of one curve in a row that tell the velocities at all of them (stencil_fit.cpp).
+constexpr std::size_t kNodesThatTell = 5;
 
 double turn_rad(const PathPiece& piece, double from_ms, double to_ms) {
   double turn = 0;
@@ -60,8 +61,9 @@ std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>
     if (auto fault = finish(out)) return fault;
   if (!is_open_)
     if (auto fault = start_chain(piece)) return fault;
-  enter_piece(piece);
   place_nodes(piece);
+  has_few_nodes_ = places_.size() + 1 < kNodesThatTell;
+  enter_piece(piece);
   for (const Place& place : places_)
     if (auto fault = add_node(piece, place, out)) return fault;
   end_is_open_ = open().time_ms != piece.start_ms + piece.duration_ms;
@@ -122,11 +124,9 @@ void Segmenter::enter_piece(const PathPiece& piece) {
 }
 
 /// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and on
-/// curves with too few nodes.
+/// pieces with too few nodes: the nodes of the next piece of the same curve may help, or there may be none.
 void Segmenter::take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const {
-  const double part_of_curve = parameter(piece.part[0], piece.duration_ms) - parameter(piece.part[0], 0);
-  const bool has_few_nodes = piece.duration_ms < kNodesThatTell * config_.segment_time_ms * part_of_curve;
-  if (uniform_ || (piece.part_count == 1 && !has_few_nodes)) return;
+  if (uniform_ || (piece.part_count == 1 && !has_few_nodes_)) return;
   side.velocity_mu_ms.assign(kinematics_.count(), 0);
   if (point.velocity == AxisVector{}) return;   // at rest
   const double step_ms = std::min(kLongestDifference_ms, config_.segment_time_ms / kDifferencesPerSegment);

@@ -57,7 +57,8 @@ class Segmenter {
   std::int64_t next_grid_ = 1;          // next node at origin + next_grid * segment time
   std::uint64_t stretch_ = 0;
   double stretch_start_ms_ = 0;
-  std::vector<Place> places_;
+  std::vector<Place> places_;           // of the piece
+  bool has_few_nodes_ = false;          // the last piece: too few to tell velocities
 };
 
 }  // namespace pmac::motion
