@@ -55,7 +55,7 @@ Segmenter::Segmenter(const PipelineConfig& config, const MotorKinematics& kinema
       longest_ms_(longest_line_ms(config, kinematics)) {}
 
 std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>& out) {
-  if (is_open_ && (piece.starts_at_rest || piece.step_at_start))
+  if (is_open_ && (piece.starts_at_rest || piece.step_at_start || stands_still(piece)))
     if (auto fault = close_gap(out)) return fault;
   if (is_open_ && piece.starts_at_rest)
     if (auto fault = finish(out)) return fault;
@@ -64,6 +64,8 @@ std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>
   place_nodes(piece);
   has_few_nodes_ = places_.size() + 1 < kNodesThatTell;
   enter_piece(piece);
+  if (stands_still(piece))
+    if (auto fault = stand_still(piece)) return fault;
   for (const Place& place : places_)
     if (auto fault = add_node(piece, place, out)) return fault;
   end_is_open_ = open().time_ms != piece.start_ms + piece.duration_ms;
@@ -121,6 +123,22 @@ void Segmenter::enter_piece(const PathPiece& piece) {
   }
   if (!is_new_side) open().after = open().before;
   open().step = open().step || piece.step_at_start;
+}
+
+/// The motors stand still on this piece: a delay, or moves of axes that no motor follows.
+bool Segmenter::stands_still(const PathPiece& piece) const {
+  return !uniform_ && piece.part_count == 1 && (piece.part[0].curve->moved & kinematics_.axes()) == 0;
+}
+
+/// What the blend before the piece leaves of velocity and distance is rounding: the open node is exactly where the motors stand.
+std::optional<Fault> Segmenter::stand_still(const PathPiece& piece) {
+  MotorNode& node = open();
+  PathMotion point;
+  evaluate(piece, 0, kinematics_.axes(), point);
+  if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
+  node.after.velocity_mu_ms.assign(kinematics_.count(), 0);
+  if (!node.step) node.before.velocity_mu_ms = node.after.velocity_mu_ms;
+  return std::nullopt;
 }
 
 /// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and on
@@ -203,7 +221,8 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& pl
   node.position_mu.resize(kinematics_.count());
   PathMotion point;
   evaluate(piece, local_ms, kinematics_.axes(), point);
-  if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
+  if (stands_still(piece)) node.position_mu = open().position_mu;
+  else if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
   fit_->add(open(), out);

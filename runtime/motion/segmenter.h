@@ -40,6 +40,8 @@ class Segmenter {
   void take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const;
   void place_nodes(const PathPiece& piece);
   void add_turn_nodes(const PathPiece& piece, double end_ms);
+  bool stands_still(const PathPiece& piece) const;
+  std::optional<runtime::Fault> stand_still(const PathPiece& piece);
   bool passes_nodes(const PathPiece& piece) const;
 
   const PipelineConfig& config_;
