@@ -18,7 +18,7 @@ constexpr double kMinGap_ms = 1e-3;
 /// Differences of a kinematic routine: short beside a segment, and long beside what an iterating routine leaves undecided.
 constexpr double kLongestDifference_ms = 1, kDifferencesPerSegment = 8;
 /// Nodes of one curve in a row that tell the velocities at all of them (stencil_fit.cpp).
-constexpr std::size_t kNodesThatTell = 5;
+constexpr std::size_t kNodesThatTell = 6;
 
 double turn_rad(const PathPiece& piece, double from_ms, double to_ms) {
   double turn = 0;

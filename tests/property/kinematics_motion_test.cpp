@@ -154,7 +154,8 @@ TEST_CASE("random motion through plain routines: ends, dwells, lengths and limit
       CHECK(wrong_lengths(motion, run) == "");
       CHECK(wrong_times(run) == "");
       // Both have the same nodes, and velocities that differ by dv move the positions between two of them by at most 4/27 h dv. They are the same
-      // but for rounding on lines and pvt moves; in pieces of arcs with five nodes and more, at most 0.1 rad apart, dv is some 0.1^4 / 20 of the speed.
+      // but for rounding on lines and pvt moves; in pieces of arcs with six nodes and more, at most 0.1 rad apart, dv is up to 0.1^5 / 6 of the
+      // speed: 7e-4 mu at 300 mu/ms and nodes of 10 ms.
       const MotionRun by_definitions = run_motion(motion.text);
       if (!lookahead) CHECK(apart_mu(run, by_definitions) < 1e-3);
       // Straight lines of linear maps are longer segments: a short window sees further by as much.
