@@ -153,6 +153,7 @@ TEST_CASE("random motion through plain routines: ends, dwells, lengths and limit
       CHECK(wrong_dwell(motion, run) == "");
       CHECK(wrong_lengths(motion, run) == "");
       CHECK(wrong_times(run) == "");
+      if (!lookahead) CHECK(wrong_pvt_times(motion, run) == "");
       // Both have the same nodes, and velocities that differ by dv move the positions between two of them by at most 4/27 h dv. They are the same
       // but for rounding on lines and pvt moves; in pieces of arcs with six nodes and more, at most 0.1 rad apart, dv is up to 0.1^5 / 6 of the
       // speed: 7e-4 mu at 300 mu/ms and nodes of 10 ms.
