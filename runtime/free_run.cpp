@@ -77,6 +77,25 @@ bool service_event(Machine::State& s, const std::vector<CoordSystem*>& running) 
   return std::all_of(running.begin(), running.end(), [](const CoordSystem* c) { return c->runs_along(); });
 }
 
+/// The samples up to now_ms = next_ms where there is a block of them. False: interrupted before.
+bool pass_to(Machine::State& s, double next_ms) {
+  const bool block_is_full = s.tick_ms(s.tick + kLeftOutTicks) <= next_ms;
+  s.now_ms = block_is_full ? s.sample_to(next_ms) : next_ms;
+  return s.now_ms >= next_ms;
+}
+
+/// As the loop of run_free() while one coordinate system alone runs along plain lines, which it has begun.
+std::uint64_t run_lines(Machine::State& s, CoordSystem& running, double limit_ms, std::uint64_t event) {
+  while (s.instructions <= s.options.max_instructions && !interruption_wanted()) {
+    const double next_ms = std::max(s.now_ms, running.next_lines_ms());
+    if (!(next_ms < limit_ms) || !pass_to(s, next_ms)) break;
+    running.pass_samples(last_tick_ms(s));
+    if (!running.service_lines(s.now_ms) || ++event % kEventsPerLook == 0) break;
+  }
+  running.end_lines();
+  return event;
+}
+
 }  // namespace
 
 void Machine::State::end_free_run() {
@@ -94,9 +113,12 @@ std::uint64_t run_free(Machine::State& s, double limit_ms, std::uint64_t event) 
   for (bool goes_on = true; goes_on && s.instructions <= s.options.max_instructions && !interruption_wanted();) {
     const double next_ms = std::max(s.now_ms, next_event_ms(running));
     if (!(next_ms < limit_ms)) break;
-    const bool block_is_full = s.tick_ms(s.tick + kLeftOutTicks) <= next_ms;
-    s.now_ms = block_is_full ? s.sample_to(next_ms) : next_ms;
-    if (s.now_ms < next_ms) break;   // interrupted
+    if (running.size() == 1 && running[0]->begin_lines()) {
+      event = run_lines(s, *running[0], limit_ms, event);
+      goes_on = event % kEventsPerLook != 0;
+      continue;
+    }
+    if (!pass_to(s, next_ms)) break;
     goes_on = service_event(s, running);
     goes_on = ++event % kEventsPerLook != 0 && goes_on;
   }

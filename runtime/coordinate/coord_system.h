@@ -167,6 +167,13 @@ class CoordSystem {
   void pass_samples(double time_ms);
   /// Positions of at least so many ms behind the place of motion stay known without samples, or none are stored.
   bool may_pass_samples(double left_out_ms) const;
+  /// Plain lines one after the other, while nobody else runs (line_run.cpp). begin_lines(): true where the program stands before such lines;
+  /// then service_lines() takes the place of service() until it answers false or end_lines() is called.
+  bool begin_lines();
+  bool service_lines(double time_ms);
+  void end_lines();
+  /// When a program that runs along calculates on.
+  double next_lines_ms() const { return resume_ms_; }
   const std::vector<int>& path_motors() const { return path_map_.motors; }
   /// The line whose move, dwell or wait executes at the present time.
   bytecode::SourceLine executing_source(double time_ms) const;
@@ -288,6 +295,10 @@ class CoordSystem {
   motion::PipelineConfig config();
   motion::MotorMap motor_map();
 
+  // line_run.cpp
+  bool lines_are_plain() const;
+  bool add_row();
+
   // in_position.cpp
   bool waits_in_position() const;
   bool holds_back(const motion::MotionCommand& command);
@@ -390,6 +401,16 @@ class CoordSystem {
   RapidMove rapid_;
   double item_start_ms_ = 0, rapid_start_ms_ = 0, rapid_length_uu_ = 0;
   bool rapid_open_ = false;         // its motors move; reported when they have come to rest
+
+  /// A run of plain lines. row: the next one.
+  struct LineRun {
+    motion::LinePath* path = nullptr;
+    const bytecode::MoveRun* run = nullptr;
+    std::size_t first_row = 0, row = 0;
+    std::array<double, 8> target{};
+  };
+  LineRun lines_;
+  int lines_wait_ = 0;              // events before the next one is tried
 
   std::uint64_t next_id_ = 1;
   struct PendingMove { std::uint64_t id; std::string_view mode; bytecode::SourceLine source; };

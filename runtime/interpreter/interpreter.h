@@ -147,6 +147,11 @@ class Thread {
 
   /// Routines that have been called and have not returned.
   std::size_t call_depth() const { return frames_.size(); }
+  /// The row of a move run that the thread stands before, in the loop over its rows; no canned cycle waits for its words.
+  struct RowPlace { const bytecode::MoveRun* run; std::size_t row; };
+  std::optional<RowPlace> at_row() const;
+  /// Standing there, it goes on with this row of the same run.
+  void stand_at_row(std::size_t row);
   /// Number in its buffer of the instruction being executed, or about to be.
   std::uint32_t pc() const { return pc_; }
 

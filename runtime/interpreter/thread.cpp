@@ -59,6 +59,21 @@ std::optional<bytecode::SourceLine> Thread::row_source() const {
   return row >= 0 && row < static_cast<double>(run.row_count()) ? std::optional(run.source(static_cast<std::size_t>(row))) : std::nullopt;
 }
 
+std::optional<Thread::RowPlace> Thread::at_row() const {
+  using bytecode::Opcode;
+  if (!program_ || one_line_ || (cycle_.armed && code_depth_ == 0)) return std::nullopt;
+  const std::vector<bytecode::Instruction>& code = program_.program->code;
+  if (std::size_t{pc_} + 2 >= code.size() || code[pc_].op != Opcode::kRowWords) return std::nullopt;
+  const bytecode::Instruction &in = code[pc_], &loop = code[pc_ + 2];
+  const bool is_loop = code[pc_ + 1].op == Opcode::kBlockEnd && loop.op == Opcode::kRowLoop && loop.a == in.a && loop.imm == static_cast<std::int64_t>(pc_);
+  const bytecode::MoveRun& run = program_.module->move_runs[static_cast<std::size_t>(in.imm)];
+  const double row = stack_[base_ + in.a];
+  if (!is_loop || !(row >= 0 && row < static_cast<double>(run.row_count()))) return std::nullopt;
+  return RowPlace{&run, static_cast<std::size_t>(row)};
+}
+
+void Thread::stand_at_row(std::size_t row) { stack_[base_ + program_.program->code[pc_].a] = static_cast<double>(row); }
+
 bytecode::SourceLine Thread::source() const {
   if (!program_) return {};
   if (const auto row = row_source()) return *row;

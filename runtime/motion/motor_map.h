@@ -31,8 +31,12 @@ class MotorKinematics {
   /// False where it has no solution there.
   bool rate_by_differences(const AxisVector& axis_uu, const AxisVector& axis_rate_uu_ms, double step_ms, double* motor_rate_mu_ms, SourceLine source) const;
 
- private:
+  /// Linear maps only: offsets, and coefficients other than 0 by motor.
   struct Term { std::size_t motor, axis; double coefficient; };
+  const std::vector<Term>& terms() const { return terms_; }
+  const std::vector<double>& offset_mu() const { return offset_mu_; }
+
+ private:
   std::size_t count_ = 0;
   std::uint32_t axes_ = ~0u;
   std::vector<Term> terms_;          // non-zero coefficients, by motor

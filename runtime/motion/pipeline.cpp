@@ -7,6 +7,7 @@
 
 #include "runtime/motion/governing.h"
 #include "runtime/motion/jerk_lookahead.h"
+#include "runtime/motion/line_path.h"
 #include "runtime/motion/lookahead.h"
 #include "runtime/motion/planner.h"
 #include "runtime/motion/position_limits.h"
@@ -90,6 +91,7 @@ struct Pipeline::State {
   bool in_sequence = false;
   Move next;                            // being added
   PlannerOutput planned;
+  std::optional<LinePath> lines;        // between open_lines() and close_lines()
   std::vector<Segment> segments;
   std::vector<TimedSegment> timed;
 
@@ -240,11 +242,29 @@ std::optional<Fault> Pipeline::add(const MotionCommand& command) {
   State& s = *state_;
   if (s.fault) return s.fault;
   if (auto problem = make_move(command, s.planner.position(), s.planner.motor_position(), {s.config, s.kinematics}, s.next)) return problem;
-  s.timeline.prune();
-  s.timings.prune(s.timeline.sampled_ms());
+  prune();
   s.start_sequence();
   s.planner.add(s.next, s.config, s.planned);
   return s.run_stages(false);
+}
+
+void Pipeline::prune() {
+  state_->timeline.prune();
+  state_->timings.prune(state_->timeline.sampled_ms());
+}
+
+LinePath* Pipeline::open_lines(const MotionCommand& like) {
+  State& s = *state_;
+  const bool observed = s.observers.path || s.observers.segment || s.observers.timed_segment;
+  if (s.fault || !s.in_sequence || !s.segmenter || observed) return nullptr;
+  s.lines.reset();
+  if (const auto lines = LinePath::open({s.config, s.kinematics, s.planner, *s.segmenter, s.timings, s.timeline, s.sequence_ms}, like)) s.lines.emplace(*lines);
+  return s.lines ? &*s.lines : nullptr;
+}
+
+void Pipeline::close_lines() {
+  if (state_->lines) state_->lines->close();
+  state_->lines.reset();
 }
 
 std::optional<double> Pipeline::stop_by_rule_ms(const MotionCommand& next) const {

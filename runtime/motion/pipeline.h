@@ -15,6 +15,7 @@
 
 namespace pmac::motion {
 
+class LinePath;
 struct PathPiece;
 struct Segment;
 struct TimedSegment;
@@ -73,6 +74,14 @@ class Pipeline {
   double horizon_ms() const;
   /// End of the motion that has been ended; the time at which the motors come to rest. Valid after end_sequence().
   double end_ms() const;
+
+  /// From here commands that are plain lines, with all but id, source, axes and target as in `like`, can be added to what this answers, until
+  /// close_lines(); nothing else may be added meanwhile. Nobody is told when synchronous assignments of these lines are due. nullptr: they are
+  /// no such lines (line_path.h), or not now.
+  LinePath* open_lines(const MotionCommand& like);
+  void close_lines();
+  /// Forgets what samples have passed, as add() does.
+  void prune();
 
   /// Motor positions at these times, all from oldest_ms() to horizon_ms(); fastest where they ascend. Each is that of its time alone,
   /// whatever the others. position_mu: [motor][time], motor order of the map. velocity_mu_ms: same shape, or empty. Does not allocate.

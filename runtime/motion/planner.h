@@ -55,6 +55,7 @@ class Planner {
   double end_ms() const { return clock_ms_; }
 
  private:
+  friend class LinePath;   // does the same for plain lines
   void begin(Move& move, const PipelineConfig& config, PlannerOutput& out);
   void stop(PlannerOutput& out);
   void wait(const Move& next, double duration_ms, PlannerOutput& out);

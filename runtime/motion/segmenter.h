@@ -30,6 +30,7 @@ class Segmenter {
   void abandon(std::vector<Segment>& out);
 
  private:
+  friend class LinePath;   // does the same for plain lines
   struct Place { double local_ms, passed_ms; };   // of a node; see Segment
   std::optional<runtime::Fault> start_chain(const PathPiece& piece);
   std::optional<runtime::Fault> add_node(const PathPiece& piece, const Place& place, std::vector<Segment>& out);

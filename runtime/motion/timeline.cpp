@@ -56,6 +56,20 @@ void Timeline::push(TimedSegment&& segment) {
   end_is_noted_ = false;
 }
 
+Segment& Timeline::extend(double start_ms, double duration_ms) {
+  Known& known = known_.extend();
+  TimedSegment& timed = known.timed;
+  timed.start_ms = start_ms;
+  timed.duration_ms = timed.segment.duration_ms = duration_ms;
+  timed.rate = 1;
+  timed.rate_slope = timed.jerk_step = timed.segment.passed_ms = 0;
+  known.programmed_ms = programmed_end_ms_;
+  programmed_end_ms_ += duration_ms;
+  end_ms_ = start_ms + duration_ms;
+  end_is_noted_ = false;
+  return timed.segment;
+}
+
 /// Where the last segment ends, and how fast.
 void Timeline::note_end() {
   if (std::exchange(end_is_noted_, true)) return;

@@ -18,6 +18,8 @@ class Timeline {
 
   /// Starts at or after the end of the one before.
   void push(TimedSegment&& segment);
+  /// The same, run through at its programmed rate, to be filled in but for its times: nothing is known of what stands in it.
+  Segment& extend(double start_ms, double duration_ms);
   /// So much programmed time stays known behind the last sample, for retracing.
   void keep_history(double programmed_ms) { history_ms_ = programmed_ms; }
   /// Forgets segments that sample() has passed and that are no history either.

@@ -33,6 +33,7 @@ class Timings {
   void take_sync_times(std::vector<SyncTime>& out);
 
  private:
+  friend class LinePath;   // does the same for plain lines
   struct Place { double programmed_ms = 0, time_ms = 0; bool given = false, known = false; };
   struct Record { std::uint64_t id = 0; double length_uu = 0; Place sync, start, end; TimeRule rule = TimeRule::kFeed; };
   void cover_place(Place& place, const TimedSegment& segment, bool round_up) const;

@@ -1,0 +1,106 @@
+// A run of plain move lines (rows of bytecode::MoveRun) while nothing else happens: what the interpreter, the move block and the stages of a
+// motion command do for each of them comes down to the target, which goes straight to the path (motion/line_path.h). Part of a free run
+// (free_run.h); what comes out of a run is the same with and without.
+#include <algorithm>
+#include <cmath>
+
+#include "compiler/bytecode/element.h"
+#include "runtime/motion/line_path.h"
+#include "runtime/state.h"
+
+namespace pmac::runtime {
+namespace {
+
+using bytecode::ElementId;
+
+/// Instructions of a row after which the program waits, and of one after which it goes on: row.words, block.end, row.loop.
+constexpr std::uint64_t kOfLastRow = 2, kOfRow = 3;
+/// Runs that end after fewer rows are not worth it; then so many events go by before the next one is tried.
+constexpr std::size_t kFewRows = 8;
+constexpr int kEventsBetween = 16;
+/// Rows of one event: far from what a pass may take.
+constexpr double kMostRowsAtOnce = 1000;
+
+bool rolls_over(const ElementStore& elements, unsigned cs) {
+  for (unsigned i = 0; i < 6; ++i)
+    if (elements.get(ElementId::kCoordPosRollOver, cs, i) != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+/// All that a plain line can meet in this coordinate system is its way to the path.
+bool CoordSystem::lines_are_plain() const {
+  const ElementStore& e = machine_.elements;
+  const auto cs = static_cast<unsigned>(number_);
+  const bool nobody_acts = sync_.empty() && due_.empty() && !held_back_ && !stop_requested_ && !pause_requested_ && !pause_at_rest_ && !stepping_ && block_.empty();
+  const bool no_stage_between = frame_.is_plain() && modal.compensation_side == 0 && !compensation_.active() && spline_.empty() && !pvt_goes_on_;
+  const bool element_rules = e.get(ElementId::kCoordNoBlend, cs) == 0 && e.get(ElementId::kCoordOnceNoBlend, cs) == 0 && !waits_in_position() && !rolls_over(e, cs);
+  return nobody_acts && no_stage_between && element_rules && modal.mode == bytecode::MoveMode::kLinear && !machine_.options.observers.motion_command &&
+         !has_position_limits();
+}
+
+/// The program stands before a row, and its lines can go the short way from here on.
+bool CoordSystem::begin_lines() {
+  if (lines_wait_ > 0) return --lines_wait_, false;
+  const auto place = runner_.thread.at_row();
+  if (!place || !runs_along() || !lines_are_plain()) return false;
+  motion::LinePath* path = pipeline_.open_lines(block_command(modal, {}, program_uu_, machine_.elements, number_, runner_.thread.source()));
+  const bool stands_there = path && calculated_uu_ == program_uu_ && path->shortest_ms() * kMostRowsAtOnce > 2 * machine_.rti_period_ms() + 1;
+  lines_ = {path, place->run, place->row, place->row, {}};
+  if (path) lines_.target = path->end();
+  if (path && !stands_there) pipeline_.close_lines();
+  if (!stands_there) lines_wait_ = kEventsBetween;
+  return stands_there;
+}
+
+/// What the lines have changed of what the program and the coordinate system remember.
+void CoordSystem::end_lines() {
+  pipeline_.close_lines();
+  calculated_uu_ = pipeline_.calculated_position();
+  program_uu_ = placed_uu_ = calculated_uu_;
+  runner_.thread.stand_at_row(lines_.row);
+  lines_.path = nullptr;
+}
+
+/// As service() and calculate() while the program comes to rows. False: the event has not come to its end, and the rest is service()'s.
+bool CoordSystem::service_lines(double time_ms) {
+  record_executed(time_ms);
+  calculated_at_ms_ = time_ms;
+  pipeline_.prune();
+  for (bool enough = false; !enough;) {
+    if (!add_row()) {
+      lines_wait_ = lines_.row < lines_.first_row + kFewRows ? kEventsBetween : 1;
+      return false;
+    }
+    enough = enough_ahead(time_ms);
+    machine_.instructions += enough ? kOfLastRow : kOfRow;
+  }
+  moves_without_time_ = 0;
+  resume_ms_ = next_calculation_ms(time_ms);
+  return true;
+}
+
+/// The next row but the last, which the interpreter has to leave.
+bool CoordSystem::add_row() {
+  const bytecode::MoveRun& run = *lines_.run;
+  const std::size_t row = lines_.row;
+  if (row + 1 >= run.row_count()) return false;
+  motion::LinePath::Point& target = lines_.target;
+  const motion::LinePath::Point start = lines_.path->end();
+  target = start;
+  for (std::size_t i = run.first_word[row]; i < run.first_word[row + 1]; ++i) {
+    const int axis = bytecode::move_word_index(run.words[i]), entry = lines_.path->entry_of(axis);
+    if (bytecode::move_word_kind(run.words[i]) != bytecode::WordKind::kTarget || entry < 0) return false;
+    const auto at = static_cast<std::size_t>(entry);
+    target[at] = modal.absolute_axes >> axis & 1u ? run.values[i] : start[at] + run.values[i];
+  }
+  const bytecode::SourceLine source = run.source(row);
+  if (!lines_.path->add(target, next_id_, source)) return false;
+  pending_moves_.push_back({next_id_++, move_mode_name(modal.mode), source});
+  ++lines_.row;
+  collect_timings();
+  return true;
+}
+
+}  // namespace pmac::runtime
