@@ -7,8 +7,8 @@
 namespace pmac::motion {
 namespace {
 
-/// Velocities may change by so much over a part, in speeds of the fastest motor.
-constexpr double kChange = 0.1;
+/// Velocities may change by so much over a part, in speeds of the motor that is the fastest for its acceleration limit.
+constexpr double kChange = 0.2;
 /// A part is not shorter than one of so many equal ones.
 constexpr double kMostParts = 64;
 
@@ -54,22 +54,29 @@ bool Division::next(Stretch& part) {
 
 /// How long the part that begins here may be, as far as the rates here tell.
 double Division::wanted_ms() const {
-  double speed = 0, accel = 0;
-  for (const MotorRates& motor : from_) {
-    speed = std::max(speed, std::abs(motor.velocity));
-    accel = std::max(accel, std::abs(motor.acceleration));
+  double speed = 0, accel = 0, to_change_ms = std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < std::min(from_.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu, own_speed = std::abs(from_[m].velocity), own_accel = std::abs(from_[m].acceleration);
+    speed = std::max(speed, inverse * own_speed);
+    accel = std::max(accel, inverse * own_accel);
+    if (is_too_fast(m, own_speed) && own_accel > 0) to_change_ms = std::min(to_change_ms, own_speed / own_accel);
   }
-  return accel == 0 ? longest_ms_ : std::clamp(kChange * speed / accel, least_ms_, longest_ms_);
+  if (accel > 0) to_change_ms = std::min(to_change_ms, speed / accel);
+  return std::clamp(kChange * to_change_ms, least_ms_, longest_ms_);
 }
 
-/// How much velocities change over the part, in speeds of the fastest motor.
+/// How much velocities change over the part, in speeds of the motor that is the fastest for its acceleration limit; where a speed limit acts in its
+/// motor's own speed.
 double Division::change() const {
-  double change = 0, speed = 0;
-  for (std::size_t m = 0; m < from_.size(); ++m) {
-    change = std::max(change, std::abs(to_[m].velocity - from_[m].velocity));
-    speed = std::max(speed, std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity)));
+  double change = 0, speed = 0, most = 0;
+  for (std::size_t m = 0; m < std::min(from_.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu, own_change = std::abs(to_[m].velocity - from_[m].velocity);
+    const double own_speed = std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity));
+    change = std::max(change, inverse * own_change);
+    speed = std::max(speed, inverse * own_speed);
+    if (is_too_fast(m, own_speed)) most = std::max(most, own_change / own_speed);
   }
-  return speed > 0 ? change / speed : 0;
+  return speed > 0 ? std::max(most, change / speed) : most;
 }
 
 }  // namespace pmac::motion
