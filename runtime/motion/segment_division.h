@@ -24,7 +24,8 @@ class Division {
   void find_limits(RateLimits& result) const { find_rate_limits(from_, to_, part_ms_, limits_, accel_share_, result); }
 
  private:
-  bool is_too_fast(std::size_t motor, double speed) const { return limits_[motor].max_speed_mu_ms > 0 && speed > limits_[motor].max_speed_mu_ms; }
+  struct Along { double speed, accel, finer; };
+  Along along(const std::vector<MotorRates>& rates) const;
   double wanted_ms() const;
   double change() const;
 
