@@ -83,7 +83,7 @@ void Lookahead::append(PreparedSegment prepared) {
   const Stretch all{0, segment.duration_ms};
   const Start start{prepared.speed_ratio, prepared.max_start_rate, prepared.stops_at_start}, inside{1, std::numeric_limits<double>::infinity(), false};
   find_rate_limits(segment, all, limits_, whole.accel_share, first_limits_);
-  if (first_limits_.is_even || !may_be_limited(segment, limits_, whole.accel_share)) {
+  if (first_limits_.is_even || first_limits_.allows_full_rate) {
     Interval& next = append_interval(all, start);
     next.limits = first_limits_;
     return bound_start(next, start);

@@ -17,18 +17,6 @@ constexpr double kMostParts = 64;
 
 }  // namespace
 
-bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
-  constexpr double kFar = 0.1;
-  const double h = segment.duration_ms;
-  for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
-    const MotorCubic& q = segment.motor[m];
-    const double accel = std::max(std::abs(q.acceleration(0)), std::abs(q.acceleration(h))), speed = limits[m].max_speed_mu_ms;
-    if (accel * limits[m].inv_amax_ms2_mu > kFar * accel_share) return true;
-    if (speed > 0 && (std::abs(q.c1) > speed || std::abs(q.velocity(h / 2)) > speed || std::abs(q.velocity(h)) > speed)) return true;
-  }
-  return false;
-}
-
 void Division::start(const Segment& segment, const RateLimits& found, double accel_share) {
   segment_ = &segment;
   accel_share_ = accel_share;

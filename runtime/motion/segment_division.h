@@ -8,10 +8,6 @@
 
 namespace pmac::motion {
 
-/// The limits may act in the segment: its own acceleration at full rate is not far from them, or a speed beyond. Elsewhere x is 1, or changes
-/// as on a straight line.
-bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share);
-
 /// Divides a segment from its start to its end: `while (division.next(part)) ...`.
 class Division {
  public:
