@@ -130,7 +130,7 @@ RateCourse RateLimits::largest_start(double x0_max, double x1_max) const {
   const CourseBounds bounds(*this, kPlanned);
   Vertex vertex(start_max, 1, x1_max, kEndMatters);
   if (!find_course(bounds, vertex, 0)) return {0, 0, 0};
-  return {std::max(0.0, vertex.course().x0), vertex.course().x1, vertex.course().bend};
+  return {std::max(0.0, vertex.course().x0), std::clamp(vertex.course().x1, 0.0, x1_max), vertex.course().bend};
 }
 
 RateCourse RateLimits::largest_end(double x0, double x1_max) const {

@@ -8,7 +8,7 @@ namespace pmac::motion {
 namespace {
 
 /// Velocities may change by so much over a part, in speeds of the fastest motor.
-constexpr double kChange = 0.2;
+constexpr double kChange = 0.1;
 /// A part is not shorter than one of so many equal ones.
 constexpr double kMostParts = 64;
 
