@@ -147,9 +147,11 @@ void Lookahead::split_last() {
 /// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are.
 void Lookahead::backward(double end_beta) {
   double beta = end_beta;  // of x at the end of interval i
+  RateCourse like;
   for (int i = known() - 1; i >= 0; --i) {
     Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    const RateCourse last = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2));
+    const RateCourse last = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2), like);
+    like = last;
     const bool is_same = i < planned_ && last.x0 == interval.last.x0;
     interval.last = last;
     if (is_same) break;
@@ -165,7 +167,8 @@ void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   at_start_ = false;
   const double allowed = std::min(end_beta_of(0, end_beta), interval.limits.max_end_rate2);
   const bool slows_down = rate2_ == interval.last.x0 && rate2_ > 0 && !interval.limits.is_even;
-  const RateCourse course = slows_down ? interval.last : interval.limits.largest_end(rate2_, allowed);
+  const RateCourse course = slows_down ? interval.last : interval.limits.largest_end(rate2_, allowed, last_course_);
+  last_course_ = course;
   const double ratio2 = known() > 1 ? intervals_[1].speed_ratio2 : 1;
   const bool meets_beta = course.x1 == end_beta_of(0, end_beta) && (rate2_ < interval.last.x0 || interval.last.x0 == interval.start_bound);
   emit(interval, course, meets_beta, out);

@@ -84,6 +84,7 @@ class Lookahead : public TimeLaw {
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass
   double rate2_ = 0;            // x at the start of the first interval
+  RateCourse last_course_;      // the latest that was committed
   bool at_start_ = true;
 };
 

@@ -24,6 +24,7 @@ namespace pmac::motion {
 struct RateCourse {
   double x0 = 0, x1 = 0;          // at its start and end
   double bend = 0;                // acceleration of programmed time at the end less at the start, times the duration of the part
+  std::array<int, 2> deciding{};  // the limits that it is held by, where these are two; 0: others are
 };
 
 /// One motor over a part, in acceleration limits: velocity at the start over the duration of the part, acceleration at both ends.
@@ -59,10 +60,10 @@ struct RateLimits {
   bool is_even = false;             // the motors run straight at constant speed
   bool allows_full_rate = false;    // from end to end
 
-  /// The largest x0 <= x0_max from which some x1 in [0, x1_max] can be reached, and how.
-  RateCourse largest_start(double x0_max, double x1_max) const;
+  /// The largest x0 <= x0_max from which some x1 in [0, x1_max] can be reached, and how. like: of a part nearby, where it is sooner found.
+  RateCourse largest_start(double x0_max, double x1_max, const RateCourse& like = {}) const;
   /// The largest x1 <= x1_max that can be reached from x0, and how.
-  RateCourse largest_end(double x0, double x1_max) const;
+  RateCourse largest_end(double x0, double x1_max, const RateCourse& like = {}) const;
   /// Highest x at both ends.
   double max_rate2() const { return max_start_rate2 < max_end_rate2 ? max_start_rate2 : max_end_rate2; }
 };

@@ -7,8 +7,11 @@
 namespace pmac::motion {
 namespace {
 
-/// Velocities may change by so much over a part, in speeds of the fastest motor.
-constexpr double kChange = 0.1;
+/// Velocities may change by so much over a part, in speeds of the motor that is the fastest for its acceleration limit.
+constexpr double kChange = 0.2;
+/// Where the program changes the speed along its path beyond this many limits, x makes up for that: it has to be the nearer to what the path
+/// asks for, by up to this factor.
+constexpr double kManyLimits = 5, kFiner = 4;
 /// A part is not shorter than one of so many equal ones.
 constexpr double kMostParts = 64;
 
@@ -52,24 +55,43 @@ bool Division::next(Stretch& part) {
   return true;
 }
 
-/// How long the part that begins here may be, as far as the rates here tell.
-double Division::wanted_ms() const {
-  double speed = 0, accel = 0;
-  for (const MotorRates& motor : from_) {
-    speed = std::max(speed, std::abs(motor.velocity));
-    accel = std::max(accel, std::abs(motor.acceleration));
+/// Speed along the path, and its change, in limits of the motors.
+Division::Along Division::along(const std::vector<MotorRates>& rates) const {
+  double square = 0, rise = 0, most = 0;
+  for (std::size_t m = 0; m < std::min(rates.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu, speed = inverse * rates[m].velocity, accel = inverse * rates[m].acceleration;
+    square += speed * speed;
+    rise += speed * accel;
+    most = std::max(most, std::abs(accel));
   }
-  return accel == 0 ? longest_ms_ : std::clamp(kChange * speed / accel, least_ms_, longest_ms_);
+  const double speed = std::sqrt(square), finer = std::clamp(std::sqrt(most / kManyLimits), 1.0, kFiner);
+  return {speed, speed > 0 ? std::abs(rise) / speed : 0, finer};
 }
 
-/// How much velocities change over the part, in speeds of the fastest motor.
+/// How long the part that begins here may be, as far as the rates here tell.
+double Division::wanted_ms() const {
+  const Along here = along(from_);
+  double speed = 0, accel = 0, to_change_ms = here.accel > 0 ? here.speed / (here.accel * here.finer) : std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < std::min(from_.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu;
+    speed = std::max(speed, inverse * std::abs(from_[m].velocity));
+    accel = std::max(accel, inverse * std::abs(from_[m].acceleration));
+  }
+  if (accel > 0) to_change_ms = std::min(to_change_ms, speed / accel);
+  return std::clamp(kChange * to_change_ms, least_ms_, longest_ms_);
+}
+
+/// How much velocities change over the part, in speeds of the motor that is the fastest for its acceleration limit.
 double Division::change() const {
   double change = 0, speed = 0;
-  for (std::size_t m = 0; m < from_.size(); ++m) {
-    change = std::max(change, std::abs(to_[m].velocity - from_[m].velocity));
-    speed = std::max(speed, std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity)));
+  for (std::size_t m = 0; m < std::min(from_.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu;
+    change = std::max(change, inverse * std::abs(to_[m].velocity - from_[m].velocity));
+    speed = std::max(speed, inverse * std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity)));
   }
-  return speed > 0 ? change / speed : 0;
+  const Along start = along(from_), end = along(to_);
+  const double along = std::max(start.finer, end.finer) * std::abs(end.speed - start.speed), fastest = std::max(start.speed, end.speed);
+  return speed > 0 ? std::max(change / speed, along / fastest) : 0;
 }
 
 }  // namespace pmac::motion

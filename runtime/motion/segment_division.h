@@ -24,6 +24,8 @@ class Division {
   void find_limits(RateLimits& result) const { find_rate_limits(from_, to_, part_ms_, limits_, accel_share_, result); }
 
  private:
+  struct Along { double speed, accel, finer; };
+  Along along(const std::vector<MotorRates>& rates) const;
   double wanted_ms() const;
   double change() const;
 
