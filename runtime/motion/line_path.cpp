@@ -83,6 +83,7 @@ bool LinePath::takes_planner() {
   if (!p.has_pending_ || p.rest_before_ || p.step_before_) return false;
   const Move& last = p.pending_;
   if (last.pvt || last.no_blend || !is_line(*last.curve) || (last.curve->moved & ~axes_) != 0 || !(last.time_ms > 0)) return false;
+  if (last.curve->moved == 0) return false;   // the motors stand still on it: see Segmenter::stand_still()
   Line& line = line_[pending_];
   line.id = last.id;
   line.source = last.source;
@@ -187,7 +188,7 @@ bool LinePath::set_time(Line& line) const {
     other = other_size[i] > other ? other_size[i] : other;
     longest = size[i] > longest ? size[i] : longest;
   }
-  if (!std::isfinite(feed2 + longest)) return false;
+  if (!std::isfinite(feed2 + longest) || longest == 0) return false;
   line.length_uu = std::sqrt(feed2);
   const double by_feed_ms = line.length_uu / feed_uu_ * like_.feed_time_ms;
   double time_ms = by_feed_ms;

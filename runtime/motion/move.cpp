@@ -180,6 +180,7 @@ void take_words(Move& move, const MotionCommand& command) {
   move.source = command.source;
   move.entry = {command.ta_ms, command.ts_ms};
   move.exit = {command.td_ms, command.tsd_ms};
+  move.stop_ramp = {};
   move.no_blend = command.no_blend;
   move.pvt = false;
   move.normal = command.normal;

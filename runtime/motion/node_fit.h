@@ -40,7 +40,7 @@ class NodeFit {
 
 /// Cubics through the nodes with the given velocities of both sides.
 std::unique_ptr<NodeFit> make_exact_fit();
-/// Cubics through the nodes; velocities from polynomials through up to five nodes of the same stretch.
+/// Cubics through the nodes; velocities from polynomials through up to six nodes of the same stretch.
 std::unique_ptr<NodeFit> make_stencil_fit();
 /// Smoothing cubic B-spline with the nodes as control points; at rest exactly on the first and the last node.
 std::unique_ptr<NodeFit> make_bspline_fit();

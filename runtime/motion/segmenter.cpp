@@ -17,7 +17,8 @@ constexpr double kMaxTurn_rad = 0.1;
 constexpr double kMinGap_ms = 1e-3;
 /// Differences of a kinematic routine: short beside a segment, and long beside what an iterating routine leaves undecided.
 constexpr double kLongestDifference_ms = 1, kDifferencesPerSegment = 8;
-constexpr double kNodesThatTell = 4;
+/// Nodes of one curve in a row that tell the velocities at all of them (stencil_fit.cpp).
+constexpr std::size_t kNodesThatTell = 6;
 
 double turn_rad(const PathPiece& piece, double from_ms, double to_ms) {
   double turn = 0;
@@ -54,14 +55,17 @@ Segmenter::Segmenter(const PipelineConfig& config, const MotorKinematics& kinema
       longest_ms_(longest_line_ms(config, kinematics)) {}
 
 std::optional<Fault> Segmenter::add(const PathPiece& piece, std::vector<Segment>& out) {
-  if (is_open_ && (piece.starts_at_rest || piece.step_at_start))
+  if (is_open_ && (piece.starts_at_rest || piece.step_at_start || stands_still(piece)))
     if (auto fault = close_gap(out)) return fault;
   if (is_open_ && piece.starts_at_rest)
     if (auto fault = finish(out)) return fault;
   if (!is_open_)
     if (auto fault = start_chain(piece)) return fault;
-  enter_piece(piece);
   place_nodes(piece);
+  has_few_nodes_ = places_.size() + 1 < kNodesThatTell;
+  enter_piece(piece);
+  if (stands_still(piece))
+    if (auto fault = stand_still(piece)) return fault;
   for (const Place& place : places_)
     if (auto fault = add_node(piece, place, out)) return fault;
   end_is_open_ = open().time_ms != piece.start_ms + piece.duration_ms;
@@ -121,12 +125,26 @@ void Segmenter::enter_piece(const PathPiece& piece) {
   open().step = open().step || piece.step_at_start;
 }
 
+/// The motors stand still on this piece: a delay, or moves of axes that no motor follows.
+bool Segmenter::stands_still(const PathPiece& piece) const {
+  return !uniform_ && piece.part_count == 1 && (piece.part[0].curve->moved & kinematics_.axes()) == 0;
+}
+
+/// What the blend before the piece leaves of velocity and distance is rounding: the open node is exactly where the motors stand.
+std::optional<Fault> Segmenter::stand_still(const PathPiece& piece) {
+  MotorNode& node = open();
+  PathMotion point;
+  evaluate(piece, 0, kinematics_.axes(), point);
+  if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
+  node.after.velocity_mu_ms.assign(kinematics_.count(), 0);
+  if (!node.step) node.before.velocity_mu_ms = node.after.velocity_mu_ms;
+  return std::nullopt;
+}
+
 /// Velocities where neighbouring nodes do not tell them: in corners, along which positions are no smooth function of one parameter, and on
-/// curves with too few nodes.
+/// pieces with too few nodes: the nodes of the next piece of the same curve may help, or there may be none.
 void Segmenter::take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const {
-  const double part_of_curve = parameter(piece.part[0], piece.duration_ms) - parameter(piece.part[0], 0);
-  const bool has_few_nodes = piece.duration_ms < kNodesThatTell * config_.segment_time_ms * part_of_curve;
-  if (uniform_ || (piece.part_count == 1 && !has_few_nodes)) return;
+  if (uniform_ || (piece.part_count == 1 && !has_few_nodes_)) return;
   side.velocity_mu_ms.assign(kinematics_.count(), 0);
   if (point.velocity == AxisVector{}) return;   // at rest
   const double step_ms = std::min(kLongestDifference_ms, config_.segment_time_ms / kDifferencesPerSegment);
@@ -203,7 +221,8 @@ std::optional<Fault> Segmenter::add_node(const PathPiece& piece, const Place& pl
   node.position_mu.resize(kinematics_.count());
   PathMotion point;
   evaluate(piece, local_ms, kinematics_.axes(), point);
-  if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
+  if (stands_still(piece)) node.position_mu = open().position_mu;
+  else if (auto fault = kinematics_.position(point.position, node.position_mu.data(), piece.source)) return fault;
   fill_side(node.before, piece, local_ms, point);
   node.after = node.before;
   fit_->add(open(), out);

@@ -41,6 +41,8 @@ class Segmenter {
   void take_differences(NodeSide& side, const PathPiece& piece, const PathMotion& point) const;
   void place_nodes(const PathPiece& piece);
   void add_turn_nodes(const PathPiece& piece, double end_ms);
+  bool stands_still(const PathPiece& piece) const;
+  std::optional<runtime::Fault> stand_still(const PathPiece& piece);
   bool passes_nodes(const PathPiece& piece) const;
 
   const PipelineConfig& config_;
@@ -58,7 +60,8 @@ class Segmenter {
   std::int64_t next_grid_ = 1;          // next node at origin + next_grid * segment time
   std::uint64_t stretch_ = 0;
   double stretch_start_ms_ = 0;
-  std::vector<Place> places_;
+  std::vector<Place> places_;           // of the piece
+  bool has_few_nodes_ = false;          // the last piece: too few to tell velocities
 };
 
 }  // namespace pmac::motion

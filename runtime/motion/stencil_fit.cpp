@@ -14,7 +14,7 @@
 namespace pmac::motion {
 namespace {
 
-constexpr int kStencilNodes = 5;
+constexpr int kStencilNodes = 6;
 /// A node's velocity is decided when this many nodes follow it: then no later node can enter its stencil.
 constexpr std::size_t kNodesAfter = kStencilNodes - 1;
 constexpr std::size_t kNodesKept = 2 * kStencilNodes;

@@ -64,7 +64,7 @@ Segment& Timeline::extend(double start_ms, double duration_ms) {
 void Timeline::note_end() {
   if (std::exchange(end_is_noted_, true)) return;
   const TimedSegment& last = known_.back().timed;
-  const double rate = last.rate + last.rate_slope * last.duration_ms, programmed_ms = last.segment.duration_ms;
+  const double rate = last.rate_at(last.duration_ms), programmed_ms = last.segment.duration_ms;
   end_velocity_mu_ms_.resize(rest_mu_.size());
   for (std::size_t m = 0; m < rest_mu_.size(); ++m) {
     rest_mu_[m] = last.segment.motor[m].position(programmed_ms);
@@ -198,8 +198,9 @@ void Timeline::sample_segment(const TimedSegment& segment, std::span<const doubl
   const std::size_t n = last - first, count = time_ms.size();
   const double segment_ms = segment.start_ms, end = segment.segment.duration_ms, rate = segment.rate, half_slope = segment.rate_slope / 2;
   const double* time = time_ms.data() + first;
+  const bool is_even = segment.slope_growth == 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double t = time[k] - segment_ms, d = t * (rate + t * half_slope), inside = d < end ? d : end;
+    const double t = time[k] - segment_ms, d = is_even ? t * (rate + t * half_slope) : segment.programmed_ms(t), inside = d < end ? d : end;
     at[k] = t <= 0 ? 0 : inside;
   }
   for (std::size_t m = 0; m < segment.segment.motor.size(); ++m) {
@@ -210,7 +211,7 @@ void Timeline::sample_segment(const TimedSegment& segment, std::span<const doubl
     double* velocity = velocity_mu_ms.data() + m * count + first;
     for (std::size_t k = 0; k < n; ++k) {
       const double t = time[k] - segment_ms;
-      velocity[k] = q.velocity(at[k]) * (t < 0 ? 0 : rate + segment.rate_slope * t);
+      velocity[k] = q.velocity(at[k]) * (t < 0 ? 0 : segment.rate_at(t));
     }
   }
 }

@@ -168,7 +168,7 @@ TEST_CASE("lookahead: a growing window comes to the optimum from above", "[prope
     const LookaheadCase run = run_lookahead_case(program_on(machine, speed_words(200, 25) + oval()), "&1 b1r", 0);
     INFO("window " << window);
     keeps_limits_and_path(run);
-    CHECK(run.time_ms <= last_ms * (1 + 1e-7));  // straight lines are divided at other places
+    CHECK(run.time_ms <= last_ms * (1 + 1e-9));
     last_ms = run.time_ms;
     if (window >= 67) CHECK(run.time_ms <= 1.003 * 2112.29);  // 4/3 of MaxSpeed * InvAmax / (2 * SegMoveTime), User's Manual p791
   }

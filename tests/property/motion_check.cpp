@@ -86,6 +86,17 @@ std::string wrong_times(const MotionRun& run) {
   return {};
 }
 
+std::string wrong_pvt_times(const reference::RandomMotion& motion, const MotionRun& run) {
+  std::size_t block = 0;
+  for (const runtime::MoveRecord& move : run.moves) {
+    if (move.mode != "pvt") continue;
+    if (block == motion.pvt_ms.size()) return "more pvt blocks than programmed";
+    const double time_ms = motion.pvt_ms[block++];
+    if (!(std::abs(move.end_ms - move.start_ms - time_ms) < 1e-6)) return fmt::format("pvt block {} takes {} ms of {}", block, move.end_ms - move.start_ms, time_ms);
+  }
+  return block == motion.pvt_ms.size() ? "" : "fewer pvt blocks than programmed";
+}
+
 std::string broken_limit(const reference::MotionSetUp& set_up, const MotionRun& run) {
   for (std::size_t m = 0; m < 3; ++m) {
     const Largest found = largest(run, m);

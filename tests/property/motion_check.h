@@ -28,6 +28,8 @@ std::string wrong_dwell(const reference::RandomMotion& motion, const MotionRun& 
 std::string wrong_lengths(const reference::RandomMotion& motion, const MotionRun& run);
 /// Times of moves: none ends before it starts, all in order.
 std::string wrong_times(const MotionRun& run);
+/// Without lookahead: a pvt block takes the time that it says.
+std::string wrong_pvt_times(const reference::RandomMotion& motion, const MotionRun& run);
 /// Beyond 1.001 times a limit of the set-up.
 std::string broken_limit(const reference::MotionSetUp& set_up, const MotionRun& run);
 /// A step in position or speed stays what it is when one looks more closely: fine is the same program at a shorter servo period.

@@ -147,12 +147,14 @@ TEST_CASE("random motion: without lookahead a program run as it goes moves as it
 
 TEST_CASE("random motion: ends, dwells, lengths and times are those of the program", "[property][motion]") {
   holds("ends, dwells, lengths, times", [] {
-    const RandomMotion motion = random_motion(any_motion(2));
+    const MotionSpec spec = any_motion(2);
+    const RandomMotion motion = random_motion(spec);
     const MotionRun run = run_of(motion);
     expect(wrong_end(motion, run), motion);
     expect(wrong_dwell(motion, run), motion);
     expect(wrong_lengths(motion, run), motion);
     expect(wrong_times(run), motion);
+    if (!spec.set_up.lookahead) expect(wrong_pvt_times(motion, run), motion);
   });
 }
 

@@ -137,6 +137,7 @@ class Writer {
         line += std::string(" ") + "XYZ"[i] + text_of(from[i] + along * k) + ":" + text_of(k == 3 ? 0 : along / time_ms * 1000);
       }
       add(line);
+      result_.pvt_ms.push_back(time_ms);
     }
     at_ = to;
     result_.only_lines_and_arcs = false;

@@ -34,6 +34,7 @@ struct RandomMotion {
   std::string text;                              // program 1 of coordinate system 1, axes X Y Z at 1000 motor units
   std::array<double, 3> end_uu{};
   std::vector<std::array<double, 3>> dwells_uu;  // where each dwell stands
+  std::vector<double> pvt_ms;                    // of each pvt block
   double line_length_uu = 0;                     // of linear and circle moves
   bool only_lines_and_arcs = true;
   bool steps_in_speed = false;                   // programmed with ta0 ts0 and no limit to help

@@ -19,6 +19,16 @@ PipelineConfig segmented(double segment_ms = 5) {
   return config;
 }
 
+/// The same through a routine.
+PipelineConfig through_routine(PipelineConfig config) {
+  config.map.inverse = [](const AxisVector& axis, double* motor, SourceLine) -> std::optional<pmac::runtime::Fault> {
+    motor[0] = 1000 * axis[kX];
+    motor[1] = 1000 * axis[kY];
+    return std::nullopt;
+  };
+  return config;
+}
+
 }  // namespace
 
 TEST_CASE("contour and oval stay within 1 um of their lines and arcs at servo rate", "[motion][segmenter]") {
@@ -105,6 +115,39 @@ TEST_CASE("kinematics are called once a node, and twice more in corners", "[moti
   // Nodes are one more than segments, one call is for reset(). The corner of 50 ms has 11 nodes, with two where it begins and ends between
   // multiples of 5 ms; in them velocities are central differences.
   CHECK(calls <= static_cast<int>(r.segments.size()) + 2 + 2 * 13);
+}
+
+TEST_CASE("a routine that does what axis definitions do gives their motion, also on arcs with two or three nodes", "[motion][segmenter]") {
+  for (const double segment_ms : {2.0, 5.0, 10.0}) {
+    Program p;   // full circles of 57, 62 and 73 ms: corners of 55 ms leave 2 to 18 ms of them
+    p.feed(260).ta(50).ts(5).xy(12, 0).arc_ij(true, 12, 0, 2.32, 0.44).xy(-4, -9).arc_ij(false, -4, -9, 2.5, 0.6).xy(3, -9).arc_ij(false, 3, -9, 3, 0.3).xy(0, 0);
+    const Run a = run(segmented(segment_ms), p), b = run(through_routine(segmented(segment_ms)), p);
+    REQUIRE(a.position[0].size() == b.position[0].size());
+    double apart_mu = 0;
+    for (std::size_t m = 0; m < 2; ++m)
+      for (std::size_t k = 0; k < a.position[m].size(); ++k) apart_mu = std::max(apart_mu, std::abs(a.position[m][k] - b.position[m][k]));
+    CHECK(apart_mu < 1e-3);
+  }
+}
+
+TEST_CASE("motors stand exactly still in a delay, and lookahead takes it at full rate", "[motion][segmenter]") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> at(-20, 20), ms(1, 40);
+  for (int i = 0; i < 200; ++i) {
+    Program p;   // at half the motors' acceleration: 57 mu/ms in 60 ms and more
+    p.feed(40 * std::sqrt(2)).ta(60 + ms(random)).ts(i % 2 * ms(random)).xy(at(random), at(random)).delay(200 + ms(random)).xy(at(random), at(random));
+    for (PipelineConfig config : {segmented(ms(random)), through_routine(segmented(ms(random)))}) {
+      const Run plain = run(config, p);
+      const double from_ms = plain.timings[1].start_ms + 70, to_ms = plain.timings[1].end_ms - 70;   // half of ta and ts
+      for (const Segment& s : plain.segments)
+        if (s.start_ms >= from_ms && s.start_ms + s.duration_ms <= to_ms)
+          for (const MotorCubic& q : s.motor) CHECK((q.c1 == 0 && q.c2 == 0 && q.c3 == 0));
+      config.lookahead = true;
+      config.lookahead_segments = 100;
+      set_limits(config, 500, 4);
+      CHECK(run(config, p).end_ms == Approx(plain.end_ms).margin(1e-6));
+    }
+  }
 }
 
 TEST_CASE("an unreachable place stops production with the line of its move", "[motion][segmenter]") {

@@ -51,6 +51,22 @@ TEST_CASE("pvt: ta, ts and the motors' limits do not change it", "[programs][pvt
   }
 }
 
+TEST_CASE("pvt: after other moves it is what it is alone, to its end", "[programs][pvt]") {
+  for (const char* segments : {"Coord[1].SegMoveTime=0", "Coord[1].SegMoveTime=7"}) {
+    const Lines bench("F100 ta50 td60 ts10 linear X1\nX2 Y1\nX3\npvt40 X7:100\nX11:100\nX13:0\ndwell 5", segments);
+    REQUIRE(bench.faults.empty());
+    REQUIRE(bench.moves.size() == 7);
+    const double start_ms = bench.moves[2].end_ms, end_ms = start_ms + 120, V = 0.1, a = V / 40;
+    CHECK(bench.moves[5].end_ms == Approx(end_ms).margin(1e-9));
+    CHECK(bench.moves[6].start_ms == Approx(end_ms).margin(1e-9));
+    for (std::size_t k = 0; k < bench.time_ms.size(); ++k) {   // 3 + cubic, constant speed, constant deceleration: half V T is 2
+      const double t = bench.time_ms[k] - start_ms, left_ms = std::max(0.0, 120 - t);
+      if (t < 40) continue;
+      CHECK(bench.motor_mu[k][1] / 1000 == Approx(t < 80 ? 7 + V * (t - 40) : 13 - a * left_ms * left_ms / 2).margin(1e-9));
+    }
+  }
+}
+
 TEST_CASE("pvt: goes through a transformation", "[programs][pvt]") {
   const Lines bench("Tdata[1].Diag[6]=0 Tdata[1].Diag[7]=0 Tdata[1].XYZ[0]=-2 Tdata[1].XYZ[2]=2 tsel 1\npvt200 X5:50\nX10:0");
   REQUIRE(bench.faults.empty());
