@@ -190,22 +190,26 @@ void Lookahead::emit(const Interval& interval, const RateCourse& course, bool ma
   if (!worthwhile || !emit_with_switch(interval, course.x0, course.x1, out)) emit_part(interval, interval.stretch, course, out);
 }
 
-/// A stretch of the interval's segment that is run through; one of x0 and x1 is not zero.
-void Lookahead::emit_part(const Interval& interval, const Stretch& stretch, const RateCourse& course, std::vector<TimedSegment>& out) const {
-  const double rate0 = std::sqrt(course.x0), rate1 = std::sqrt(course.x1);
+/// A stretch of the interval's segment that is run through; one of x0 and x1 is not zero. A segment that is run through in one is handed on as it is.
+void Lookahead::emit_part(const Interval& interval, const Stretch& stretch, const RateCourse& course, std::vector<TimedSegment>& out) {
+  Segment& segment = whole_of(interval).segment;
   TimedSegment& timed = out.emplace_back();
-  take_part(whole_of(interval).segment, stretch.from_ms, stretch.duration_ms, timed.segment);
-  timed.rate = rate0;
+  if (stretch.from_ms == 0 && stretch.duration_ms == segment.duration_ms) timed.segment = std::move(segment);
+  else take_part(segment, stretch.from_ms, stretch.duration_ms, timed.segment);
+  timed.segment.passed_ms = 0;
+  timed.duration_ms = stretch.duration_ms;
+  if (course.x0 == 1 && course.x1 == 1 && course.bend == 0) return;
+  timed.rate = std::sqrt(course.x0);
   timed.rate_slope = (course.x1 - course.x0 - course.bend) / (2 * stretch.duration_ms);
   timed.slope_growth = course.bend / (stretch.duration_ms * stretch.duration_ms);
-  timed.duration_ms = time_between(rate0, rate1, stretch.duration_ms, timed.slope_growth);
+  timed.duration_ms = time_between(timed.rate, std::sqrt(course.x1), stretch.duration_ms, timed.slope_growth);
 }
 
 /// Straight at constant programmed speed: x rises as the limits allow to the highest value or until it has to fall.
 ///
 ///      x        ________
 ///     x0  ___/          \___ x1
-void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const {
+void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) {
   const Stretch& all = interval.stretch;
   const double width = interval.limits.even_change;
   const double meeting = (x0 + x1 + width) / 2, peak = std::min(interval.limits.max_rate2(), meeting), ms_per_x = all.duration_ms / width;

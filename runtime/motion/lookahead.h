@@ -68,9 +68,9 @@ class Lookahead : public TimeLaw {
   void backward(double end_beta);
   void commit_first(double end_beta, std::vector<TimedSegment>& out);
   void emit(const Interval& interval, const RateCourse& course, bool may_switch, std::vector<TimedSegment>& out);
-  void emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
+  void emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out);
   bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out);
-  void emit_part(const Interval& interval, const Stretch& stretch, const RateCourse& course, std::vector<TimedSegment>& out) const;
+  void emit_part(const Interval& interval, const Stretch& stretch, const RateCourse& course, std::vector<TimedSegment>& out);
 
   std::vector<MotorLimits> limits_;
   double window_ms_, chunk_ms_;
