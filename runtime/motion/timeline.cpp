@@ -52,7 +52,7 @@ Segment& Timeline::extend(double start_ms, double duration_ms) {
   timed.start_ms = start_ms;
   timed.duration_ms = timed.segment.duration_ms = duration_ms;
   timed.rate = 1;
-  timed.rate_slope = timed.jerk_step = timed.segment.passed_ms = 0;
+  timed.rate_slope = timed.slope_growth = timed.jerk_step = timed.segment.passed_ms = 0;
   known.programmed_ms = programmed_end_ms_;
   programmed_end_ms_ += duration_ms;
   end_ms_ = start_ms + duration_ms;
