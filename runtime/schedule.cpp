@@ -81,7 +81,7 @@ RunEnd run_events(Machine::State& s, const RunLimits& limits) {
 double Machine::State::next_rti_ms(double time_ms) const {
   if (time_ms == rti_asked_ms && rti_cycles == rti_asked_cycles) return rti_answer_ms;
   const std::int64_t every = rti_cycles;
-  auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
+  auto n = static_cast<std::int64_t>(time_ms / rti_period_ms());   // at most one too high, by rounding; then it is the answer
   while (tick_ms(n * every) <= time_ms) ++n;
   rti_asked_ms = time_ms;
   rti_asked_cycles = rti_cycles;
@@ -90,7 +90,7 @@ double Machine::State::next_rti_ms(double time_ms) const {
 
 double Machine::State::rti_at_or_after_ms(double time_ms) const {
   const std::int64_t every = rti_cycles;
-  auto n = static_cast<std::int64_t>(std::floor(time_ms / rti_period_ms())) - 1;
+  auto n = static_cast<std::int64_t>(time_ms / rti_period_ms());
   while (tick_ms(n * every) < time_ms) ++n;
   return tick_ms(n * every);
 }

@@ -1,4 +1,5 @@
 // Proves that a module is safe to execute: the tables here, the programs in verify_code.cpp.
+#include <array>
 #include <cmath>
 
 #include "compiler/bytecode/element.h"
@@ -78,7 +79,7 @@ std::string verify_symbol(const Module&, const Symbol& symbol) {
   return symbol.kind < SymbolKind::kCount ? std::string() : "no such kind of symbol";
 }
 
-bool is_move_word(std::uint8_t code) {
+constexpr bool is_move_word(std::uint8_t code) {
   const int index = move_word_index(code);
   switch (move_word_kind(code)) {
     case WordKind::kTarget:
@@ -89,6 +90,13 @@ bool is_move_word(std::uint8_t code) {
     default: return false;
   }
 }
+
+/// is_move_word() of every code.
+constexpr std::array<bool, 256> kMoveWords = [] {
+  std::array<bool, 256> are{};
+  for (unsigned code = 0; code < 256; ++code) are[code] = is_move_word(static_cast<std::uint8_t>(code));
+  return are;
+}();
 
 std::string verify_run(const Module& module, const MoveRun& run) {
   const std::size_t rows = run.row_count();
@@ -101,7 +109,7 @@ std::string verify_run(const Module& module, const MoveRun& run) {
     if (run.line[row] > 0x7fffffffu) return "wrong line";
   }
   for (const std::uint8_t code : run.words)
-    if (!is_move_word(code)) return "no such word";
+    if (!kMoveWords[code]) return "no such word";
   return {};
 }
 

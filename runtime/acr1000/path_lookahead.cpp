@@ -83,11 +83,11 @@ void PathLookahead::note(double programmed_ms, double time_ms) {
 void PathLookahead::sample(const motion::TimedSegment& timed) {
   points_.resize(system_.size());
   for (; clock_.next_s() * 1e3 < timed.start_ms + timed.duration_ms; clock_.advance()) {
-    const double t = std::max(0.0, clock_.next_s() * 1e3 - timed.start_ms), rate = timed.rate + timed.rate_slope * t;
+    const double t = std::max(0.0, clock_.next_s() * 1e3 - timed.start_ms), rate = timed.rate_at(t);
     const double d = timed.programmed_ms(t);
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const motion::MotorCubic& q = timed.segment.motor[k];
-      points_[k] = {q.position(d), q.velocity(d) * rate * 1e3, (q.acceleration(d) * rate * rate + q.velocity(d) * timed.rate_slope) * 1e6, 0};
+      points_[k] = {q.position(d), q.velocity(d) * rate * 1e3, (q.acceleration(d) * rate * rate + q.velocity(d) * timed.slope_after(d)) * 1e6, 0};
     }
     taker_(clock_.next_s(), points_);
   }

@@ -298,6 +298,8 @@ class CoordSystem {
   // line_run.cpp
   bool lines_are_plain() const;
   bool add_row();
+  void record_lines(double time_ms);
+  void collect_lines();
 
   // in_position.cpp
   bool waits_in_position() const;
@@ -407,7 +409,9 @@ class CoordSystem {
     motion::LinePath* path = nullptr;
     const bytecode::MoveRun* run = nullptr;
     std::size_t first_row = 0, row = 0;
-    std::array<double, 8> target{};
+    std::string_view mode;
+    struct Ended { std::uint64_t id; double start_ms, end_ms, length_uu; motion::TimeRule rule; bytecode::SourceLine source; };
+    motion::Ring<Ended> ended;      // planned in full; reported when they end
   };
   LineRun lines_;
   int lines_wait_ = 0;              // events before the next one is tried

@@ -25,7 +25,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the arrays are written as they are in memory, as <f8");
 
-constexpr std::size_t kBlockRows = 32768;
+constexpr std::size_t kBlockRows = 8192;   // of a few columns: they stay in the cache between checksum and write
 
 /// Little-endian fields of a ZIP record.
 class Record {
@@ -96,6 +96,7 @@ class NpzWriter : public TableWriter {
   NpzWriter(const std::string& path, std::vector<std::string> columns, std::uint64_t known_rows)
       : path_(path), file_(path), columns_(std::move(columns)), known_rows_(known_rows), block_(columns_.size() * kBlockRows), crc_(columns_.size()) {
     if (!file_.is_seekable()) throw OutputError("cannot write " + path + ": an .npz archive needs a file");
+    for (std::size_t column = 0; has_places() && column < columns_.size(); ++column) places_.push_back(data_of(column, known_rows_));
   }
   ~NpzWriter() override {
     if (scratch_ != nullptr) std::fclose(scratch_);
@@ -129,6 +130,7 @@ class NpzWriter : public TableWriter {
   OutputFile file_;
   std::vector<std::string> columns_;
   std::uint64_t known_rows_;        // 0: not known beforehand
+  std::vector<std::uint64_t> places_;  // of the columns' data, where known_rows_ says them
   std::vector<double> block_;       // [column][row]
   std::vector<std::uint32_t> crc_;  // of the spilled data of each column
   std::size_t block_rows_ = 0;
@@ -169,7 +171,7 @@ void NpzWriter::spill() {
 void NpzWriter::spill_to_places() {
   if (rows() > known_rows_) throw std::logic_error("more rows than were announced for " + path_);
   for (std::size_t column = 0; column < columns_.size(); ++column)
-    file_.patch(data_of(column, known_rows_) + spilled_rows_ * sizeof(double), bytes_of_block(column));
+    file_.patch(places_[column] + spilled_rows_ * sizeof(double), bytes_of_block(column));
 }
 
 void NpzWriter::spill_to_scratch() {

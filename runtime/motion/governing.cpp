@@ -43,12 +43,12 @@ GoverningShare Governing::limit_of(const TimedSegment& timed) const {
   double most = kGoverns, slowest = 1;
   for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const double d = part * timed.segment.duration_ms;
-    const double rate2 = std::max(0.0, timed.rate * timed.rate + 2 * timed.rate_slope * d), rate = std::sqrt(rate2);
+    const double rate2 = timed.rate2_after(d), rate = std::sqrt(rate2);
     slowest = std::min(slowest, rate);
     for (std::size_t m = 0; m < std::min(limits_.size(), timed.segment.motor.size()); ++m) {
       const MotorCubic& q = timed.segment.motor[m];
       const double speed = std::abs(q.velocity(d)) * rate;
-      const double accel = std::abs(q.acceleration(d) * rate2 + q.velocity(d) * timed.rate_slope);
+      const double accel = std::abs(q.acceleration(d) * rate2 + q.velocity(d) * timed.slope_after(d));
       const auto consider = [&](double share, GoverningLimit limit) {
         if (share < most) return;
         most = share;

@@ -33,6 +33,14 @@ bool are_plain(const MotionCommand& like) {
   return like.kind == CommandKind::kLinear && times && feed && !like.no_blend;
 }
 
+/// In the order of the entries; those that are not used add nothing.
+template <std::size_t kWidth>
+double sum(const LinePath::Point& values) {
+  double result = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) result += values[i];
+  return result;
+}
+
 }  // namespace
 
 // --- taking over -----------------------------------------------------------------------------------------------------------
@@ -57,12 +65,16 @@ bool LinePath::takes_axes() {
   entry_of_.fill(-1);
   for_each_axis(axes_, [&](std::size_t axis) {
     entry_of_[axis] = static_cast<int>(axis_count_);
-    feeds_[axis_count_] = like_.feed_axes >> axis & 1u;
+    feeds_[axis_count_] = like_.feed_axes >> axis & 1u ? 1 : 0;
     axis_of_[axis_count_++] = axis;
   });
   const std::vector<MotorKinematics::Term>& terms = stages_.kinematics.terms();
   for (const MotorKinematics::Term& term : terms) term_[term_count_++] = {term.motor, static_cast<std::size_t>(entry_of_[term.axis]), term.coefficient};
   std::copy(stages_.kinematics.offset_mu().begin(), stages_.kinematics.offset_mu().end(), offset_mu_.begin());
+  is_diagonal_ = std::all_of(terms.begin(), terms.end(), [this](const MotorKinematics::Term& term) { return static_cast<std::size_t>(entry_of_[term.axis]) == term.motor; });
+  if (is_diagonal_)
+    for (const MotorKinematics::Term& term : terms) scale_mu_uu_[term.motor] = term.coefficient;
+  is_narrow_ = axis_count_ <= kNarrow && motor_count_ <= kNarrow;
   return motor_count_ > 0 && axis_count_ > 0;
 }
 
@@ -71,6 +83,7 @@ bool LinePath::takes_planner() {
   if (!p.has_pending_ || p.rest_before_ || p.step_before_) return false;
   const Move& last = p.pending_;
   if (last.pvt || last.no_blend || !is_line(*last.curve) || (last.curve->moved & ~axes_) != 0 || !(last.time_ms > 0)) return false;
+  if (last.curve->moved == 0) return false;   // the motors stand still on it: see Segmenter::stand_still()
   Line& line = line_[pending_];
   line.id = last.id;
   line.source = last.source;
@@ -81,7 +94,7 @@ bool LinePath::takes_planner() {
     if (last.curve->end[axis_of_[i]] != line.end[i]) return false;
   }
   line.time_ms = last.time_ms;
-  set_speed(line);
+  set_speed<kMostAxes>(line);
   nominal_start_ms_ = p.nominal_start_ms_;
   entry_total_ms_ = p.entry_total_ms_;
   clock_ms_ = p.clock_ms_;
@@ -128,24 +141,29 @@ bool LinePath::takes_timings() {
 // --- a line ----------------------------------------------------------------------------------------------------------------
 
 bool LinePath::add(const Point& target, std::uint64_t id, SourceLine source) {
-  const Line& last = line_[pending_];
+  return is_narrow_ ? add_line<kNarrow>(target, id, source) : add_line<kMostAxes>(target, id, source);
+}
+
+// The loops below go over kWidth entries, of which the last ones may be unused and 0: a number known beforehand makes them vectors.
+
+template <std::size_t kWidth>
+bool LinePath::add_line(const Point& target, std::uint64_t id, SourceLine source) {
   const std::size_t at = 3 - pending_ - previous_;
   Line& next = line_[at];
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    next.start[i] = last.end[i];
-    next.end[i] = target[i];
-    next.delta[i] = target[i] - last.end[i];
-  }
+  const Point start = line_[pending_].end;
+  next.start = start;
+  next.end = target;
+  for (std::size_t i = 0; i < kWidth; ++i) next.delta[i] = target[i] - start[i];
   next.id = id;
   next.source = source;
-  if (!set_time(next)) return false;
-  set_speed(next);
-  const Blend blend = blend_into(next);
+  if (!set_time<kWidth>(next)) return false;
+  set_speed<kWidth>(next);
+  const Blend blend = blend_into<kWidth>(next);
   if (!blend.possible) return false;
   begin_line(next, blend.ramp);
   const double boundary_ms = nominal_end_ms(), half_ms = blend.ramp.total_ms() / 2;
-  cruise_until(blend.is_steady ? boundary_ms : boundary_ms - half_ms);
-  if (!blend.is_steady) corner(at, blend.ramp, blend.is_whole ? entry_parts_ : ramp_parts(blend.ramp));
+  cruise_until<kWidth>(blend.is_steady ? boundary_ms : boundary_ms - half_ms);
+  if (!blend.is_steady) corner<kWidth>(at, blend.ramp, blend.is_whole ? entry_parts_ : ramp_parts(blend.ramp));
   if (!blend.is_steady) clock_ms_ = boundary_ms + half_ms;
   nominal_start_ms_ = boundary_ms;
   entry_total_ms_ = blend.ramp.total_ms();
@@ -155,15 +173,22 @@ bool LinePath::add(const Point& target, std::uint64_t id, SourceLine source) {
 }
 
 /// As make_move(): the time of the feed rate, at least that of the ramps. False where that is for the stages.
+template <std::size_t kWidth>
 bool LinePath::set_time(Line& line) const {
-  double feed2 = 0, other = 0, longest = 0;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    const double delta = line.delta[i], size = std::abs(delta);
-    feed2 += feeds_[i] ? delta * delta : 0;
-    other = !feeds_[i] && size > other ? size : other;
-    longest = size > longest ? size : longest;
+  Point feed, size, other_size;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    const double delta = line.delta[i];
+    size[i] = std::abs(delta);
+    feed[i] = delta * delta * feeds_[i];
+    other_size[i] = size[i] * (1 - feeds_[i]);
   }
-  if (!std::isfinite(feed2 + longest)) return false;
+  double feed2 = 0, other = 0, longest = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    feed2 += feed[i];
+    other = other_size[i] > other ? other_size[i] : other;
+    longest = size[i] > longest ? size[i] : longest;
+  }
+  if (!std::isfinite(feed2 + longest) || longest == 0) return false;
   line.length_uu = std::sqrt(feed2);
   const double by_feed_ms = line.length_uu / feed_uu_ * like_.feed_time_ms;
   double time_ms = by_feed_ms;
@@ -177,29 +202,34 @@ bool LinePath::set_time(Line& line) const {
   return line.time_ms / stages_.config.segment_time_ms <= kMostSegments;
 }
 
+template <std::size_t kWidth>
 void LinePath::set_speed(Line& line) const {
   line.per_ms = 1 / line.time_ms;
-  double speed2 = 0;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    const double velocity = line.delta[i] / line.time_ms;
-    line.velocity_uu_ms[i] = velocity;
-    speed2 += velocity * velocity;
+  Point square;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    line.velocity_uu_ms[i] = line.delta[i] / line.time_ms;
+    square[i] = line.velocity_uu_ms[i] * line.velocity_uu_ms[i];
   }
-  line.speed_uu_ms = std::sqrt(speed2);
-  for (std::size_t i = 0; i < axis_count_; ++i) line.direction[i] = line.velocity_uu_ms[i] / line.speed_uu_ms;   // not a number: no direction
+  line.speed_uu_ms = std::sqrt(sum<kWidth>(square));
+  for (std::size_t i = 0; i < kWidth; ++i) line.direction[i] = line.velocity_uu_ms[i] / line.speed_uu_ms;   // not a number: no direction
 }
 
 /// As decide_join().
+template <std::size_t kWidth>
 LinePath::Blend LinePath::blend_into(const Line& next) const {
   const Line& last = line_[pending_];
-  double change2 = 0, turn2 = 0;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    const double change = next.velocity_uu_ms[i] - last.velocity_uu_ms[i], turn = next.direction[i] - last.direction[i];
-    change2 += change * change;
-    turn2 += turn * turn;
+  Point change, turn;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    change[i] = next.velocity_uu_ms[i] - last.velocity_uu_ms[i];
+    turn[i] = next.direction[i] - last.direction[i];
+  }
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    change[i] *= change[i];
+    turn[i] *= turn[i];
   }
   Blend blend;
-  blend.is_steady = std::sqrt(change2) <= kSameSpeedTolerance * std::max(last.speed_uu_ms, next.speed_uu_ms);
+  const double turn2 = sum<kWidth>(turn);
+  blend.is_steady = std::sqrt(sum<kWidth>(change)) <= kSameSpeedTolerance * std::max(last.speed_uu_ms, next.speed_uu_ms);
   const bool along_path = !blend.is_steady && turn2 <= kTangentTolerance * kTangentTolerance;
   const double room_ms = std::min(2 * last.time_ms - entry_total_ms_, 2 * next.time_ms - exit_.total_ms());
   blend.is_whole = entry_.total_ms() <= room_ms;
@@ -209,6 +239,7 @@ LinePath::Blend LinePath::blend_into(const Line& next) const {
 }
 
 /// As Planner::cruise_until().
+template <std::size_t kWidth>
 void LinePath::cruise_until(double time_ms) {
   const Line& last = line_[pending_];
   piece_.owner = pending_;
@@ -217,10 +248,11 @@ void LinePath::cruise_until(double time_ms) {
   piece_.part_count = 1;
   piece_.part[0] = {pending_, {(clock_ms_ - nominal_start_ms_) * last.per_ms, last.per_ms, 0, 0}};
   clock_ms_ = time_ms;
-  walk();
+  walk<kWidth>();
 }
 
 /// As Planner::blend_corner().
+template <std::size_t kWidth>
 void LinePath::corner(std::size_t next, const Ramp& ramp, const RampParts& parts) {
   const double out = line_[pending_].per_ms, in = line_[next].per_ms, half_ms = ramp.total_ms() / 2;
   for (int k = 0; k < parts.count; ++k) {
@@ -231,13 +263,14 @@ void LinePath::corner(std::size_t next, const Ramp& ramp, const RampParts& parts
     piece_.part_count = 2;
     piece_.part[0] = {pending_, {1 - (half_ms - part.start_ms + part.integral_ms) * out, (1 - part.value) * out, -part.slope * out / 2, -part.curvature * out / 6}};
     piece_.part[1] = {next, {part.integral_ms * in, part.value * in, part.slope * in / 2, part.curvature * in / 6}};
-    walk();
+    walk<kWidth>();
   }
 }
 
 // --- nodes and segments ------------------------------------------------------------------------------------------------------
 
 /// As Segmenter::add(): a node on every multiple of the segment time, and one at the end.
+template <std::size_t kWidth>
 void LinePath::walk() {
   if (piece_.duration_ms <= kNoTime_ms) return;
   piece_made_ = true;
@@ -245,16 +278,17 @@ void LinePath::walk() {
   for (;; ++next_grid_) {
     const double time_ms = origin_ms_ + static_cast<double>(next_grid_) * step_ms;
     if (time_ms > end_ms - kMinGap_ms) {
-      if (end_ms - from_ms >= kMinGap_ms) add_node(piece_.duration_ms, end_ms);
+      if (end_ms - from_ms >= kMinGap_ms) add_node<kWidth>(piece_.duration_ms, end_ms);
       if (time_ms <= end_ms + kMinGap_ms) ++next_grid_;
       break;
     }
-    if (time_ms >= from_ms + kMinGap_ms) add_node(time_ms - piece_.start_ms, piece_.start_ms + (time_ms - piece_.start_ms));
+    if (time_ms >= from_ms + kMinGap_ms) add_node<kWidth>(time_ms - piece_.start_ms, piece_.start_ms + (time_ms - piece_.start_ms));
   }
   end_is_open_ = node_[open_].time_ms != end_ms;
 }
 
 /// As evaluate() of a piece, at its time d.
+template <std::size_t kWidth>
 void LinePath::evaluate_at(double d, Point& position, Point& velocity) const {
   const auto place = [&](const Part& part, double& rate) {
     rate = part.u[1] + d * (2 * part.u[2] + d * 3 * part.u[3]);
@@ -264,7 +298,7 @@ void LinePath::evaluate_at(double d, Point& position, Point& velocity) const {
   const Line& line = line_[piece_.part[0].line];
   const double u = place(piece_.part[0], rate), offset = u < 0.5 ? u : u - 1;
   const Point& base = u < 0.5 ? line.start : line.end;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
+  for (std::size_t i = 0; i < kWidth; ++i) {
     position[i] = base[i] + offset * line.delta[i];
     velocity[i] = line.delta[i] * rate;
   }
@@ -273,13 +307,14 @@ void LinePath::evaluate_at(double d, Point& position, Point& velocity) const {
   const Line& next = line_[piece_.part[1].line];
   const double u2 = place(piece_.part[1], rate2), offset2 = u2 < 0.5 ? u2 : u2 - 1;
   const Point& base2 = u2 < 0.5 ? next.start : next.end;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
+  for (std::size_t i = 0; i < kWidth; ++i) {
     position[i] += base2[i] + offset2 * next.delta[i] - next.start[i];
     velocity[i] += next.delta[i] * rate2;
   }
 }
 
 /// As Segmenter::add_node() and the exact fit: with a node the segment before it is decided.
+template <std::size_t kWidth>
 void LinePath::add_node(double local_ms, double time_ms) {
   const std::size_t made = 3 - open_ - before_;
   Node& node = node_[made];
@@ -287,21 +322,27 @@ void LinePath::add_node(double local_ms, double time_ms) {
   node.command = line_[piece_.owner].id;
   node.source = line_[piece_.owner].source;
   Point position, velocity;
-  evaluate_at(local_ms, position, velocity);
-  for (std::size_t m = 0; m < motor_count_; ++m) {
-    node.position_mu[m] = offset_mu_[m];
-    node.velocity_mu_ms[m] = 0;
+  evaluate_at<kWidth>(local_ms, position, velocity);
+  if (is_diagonal_) {
+    for (std::size_t m = 0; m < kWidth; ++m) {
+      node.position_mu[m] = offset_mu_[m] + scale_mu_uu_[m] * position[m];
+      node.velocity_mu_ms[m] = 0 + scale_mu_uu_[m] * velocity[m];
+    }
+  } else {
+    node.position_mu = offset_mu_;
+    node.velocity_mu_ms = {};
+    for (std::size_t k = 0; k < term_count_; ++k) {
+      const Term& term = term_[k];
+      node.position_mu[term.motor] += term.coefficient * position[term.axis];
+      node.velocity_mu_ms[term.motor] += term.coefficient * velocity[term.axis];
+    }
   }
-  for (std::size_t k = 0; k < term_count_; ++k) {
-    const Term& term = term_[k];
-    node.position_mu[term.motor] += term.coefficient * position[term.axis];
-    node.velocity_mu_ms[term.motor] += term.coefficient * velocity[term.axis];
-  }
-  push_segment(node_[before_], node_[open_]);
+  push_segment<kWidth>(node_[before_], node_[open_]);
   before_ = open_;
   open_ = made;
 }
 
+template <std::size_t kWidth>
 void LinePath::push_segment(const Node& from, const Node& to) {
   const double duration_ms = to.time_ms - from.time_ms, start_ms = stages_.sequence_ms + from.time_ms;
   Segment& segment = stages_.timeline.extend(start_ms, duration_ms);
@@ -309,8 +350,14 @@ void LinePath::push_segment(const Node& from, const Node& to) {
   segment.source = to.source;
   segment.start_ms = from.time_ms;
   segment.motor.resize(motor_count_);
+  Point c2, c3;
+  for (std::size_t m = 0; m < kWidth; ++m) {   // as hermite_cubic()
+    const double mean = (to.position_mu[m] - from.position_mu[m]) / duration_ms, v0 = from.velocity_mu_ms[m], v1 = to.velocity_mu_ms[m];
+    c2[m] = (3 * mean - 2 * v0 - v1) / duration_ms;
+    c3[m] = (v0 + v1 - 2 * mean) / (duration_ms * duration_ms);
+  }
   MotorCubic* q = segment.motor.data();
-  for (std::size_t m = 0; m < motor_count_; ++m) q[m] = hermite_cubic(from.position_mu[m], from.velocity_mu_ms[m], to.position_mu[m], to.velocity_mu_ms[m], duration_ms);
+  for (std::size_t m = 0; m < std::min(motor_count_, kWidth); ++m) q[m] = {from.position_mu[m], from.velocity_mu_ms[m], c2[m], c3[m]};
   cover(from.time_ms, start_ms, duration_ms);
 }
 
@@ -364,7 +411,7 @@ void LinePath::cover(double from_ms, double start_ms, double duration_ms) {
   t.covered_ms_ = start_ms + duration_ms;
   for (; starts_known_ > 1 && syncs_known_ > 0; --syncs_known_, --starts_known_) {
     const Timings::Record& ended = t.records_.front();
-    t.finished_.push_back({ended.id, ended.sync.time_ms, ended.start.time_ms, ended.end.time_ms, ended.length_uu, ended.rule});
+    ended_.push_back({ended.id, ended.start.time_ms, ended.end.time_ms, ended.length_uu, ended.rule});
     t.records_.pop_front();
   }
 }

@@ -22,8 +22,9 @@ namespace pmac::motion {
 
 class LinePath {
  public:
-  static constexpr std::size_t kMostAxes = 8, kMostMotors = 8;
-  using Point = std::array<double, kMostAxes>;   // [entry of axes()]
+  static constexpr std::size_t kMostAxes = 8, kMostMotors = 8, kNarrow = 4;
+  /// [entry of an axis]; unused entries are 0.
+  struct alignas(32) Point : std::array<double, kMostAxes> {};
 
   /// What it works on; all of it outlives the line path.
   struct Stages {
@@ -47,6 +48,13 @@ class LinePath {
   /// The next line. False, and nothing has changed: one that the stages have to take (no length, too long, blended along the path, no room
   /// for a blend, a target that is not finite).
   bool add(const Point& target, std::uint64_t id, SourceLine source);
+  /// Lines that are through with their times known, in order, until the owner takes them.
+  struct Ended { std::uint64_t id; double start_ms, end_ms, length_uu; TimeRule rule; };
+  std::vector<Ended>& ended() { return ended_; }
+  /// Until then a command is known beyond the one that executes; as Pipeline::enough_until_ms(1).
+  double known_until_ms() const { return stages_.timings.ahead_until_ms(1); }
+  double horizon_ms() const { return stages_.timeline.end_ms(); }
+
   /// The stages stand where the lines have led to.
   void close();
 
@@ -69,7 +77,7 @@ class LinePath {
     double time_ms = 0;
     std::uint64_t command = 0;
     SourceLine source;
-    std::array<double, kMostMotors> position_mu{}, velocity_mu_ms{};
+    Point position_mu{}, velocity_mu_ms{};   // [motor]
   };
   struct Term { std::size_t motor = 0, axis = 0; double coefficient = 0; };
   struct Blend { bool possible = false, is_steady = false, is_whole = false; Ramp ramp; };
@@ -79,14 +87,25 @@ class LinePath {
   bool takes_planner();
   bool takes_segmenter();
   bool takes_timings();
+  template <std::size_t kWidth>
+  bool add_line(const Point& target, std::uint64_t id, SourceLine source);
+  template <std::size_t kWidth>
   bool set_time(Line& line) const;
+  template <std::size_t kWidth>
   void set_speed(Line& line) const;
+  template <std::size_t kWidth>
   Blend blend_into(const Line& next) const;
+  template <std::size_t kWidth>
   void cruise_until(double time_ms);
+  template <std::size_t kWidth>
   void corner(std::size_t next, const Ramp& ramp, const RampParts& parts);
+  template <std::size_t kWidth>
   void walk();
+  template <std::size_t kWidth>
   void evaluate_at(double d, Point& position, Point& velocity) const;
+  template <std::size_t kWidth>
   void add_node(double local_ms, double time_ms);
+  template <std::size_t kWidth>
   void push_segment(const Node& from, const Node& to);
   void begin_line(const Line& next, const Ramp& ramp);
   void know_sync(double time_ms);
@@ -103,10 +122,12 @@ class LinePath {
   std::size_t axis_count_ = 0, motor_count_ = 0;
   std::array<int, kAxisCount> entry_of_{};
   std::array<std::size_t, kMostAxes> axis_of_{};
-  std::array<bool, kMostAxes> feeds_{};          // counts for the feed rate
+  Point feeds_{};                                // 1: counts for the feed rate
   std::array<Term, kMostMotors * kMostAxes> term_{};
   std::size_t term_count_ = 0;
-  std::array<double, kMostMotors> offset_mu_{};
+  Point offset_mu_{}, scale_mu_uu_{};            // [motor]; the second where is_diagonal_
+  bool is_diagonal_ = false;                     // a motor for each axis, in the same order
+  bool is_narrow_ = false;                       // no more than kNarrow of either
   double feed_uu_ = 0, room_ms_ = 0;             // feed rate in effect; half of both ramps of a line
   Ramp entry_, exit_;
   RampParts entry_parts_;
@@ -125,6 +146,7 @@ class LinePath {
   bool piece_made_ = false, end_is_open_ = false;
   // timings: how many of its records have a known place
   std::size_t syncs_known_ = 0, starts_known_ = 0;
+  std::vector<Ended> ended_;
 };
 
 }  // namespace pmac::motion

@@ -14,8 +14,6 @@ namespace {
 constexpr double kMinPart_ms = 0.01;
 /// x that could be reached at the end of a segment to x that may: where they are nearer there is nothing to gain within it.
 constexpr double kWorthwhileRise = 1.02;
-/// x from here on is full rate.
-constexpr double kFullRate2 = 1 - 1e-9;
 /// x that differs by less is the same where motion turns from speeding up to slowing down.
 constexpr double kSamePeak = 1e-4;
 
@@ -25,8 +23,8 @@ bool stands_still(const Segment& segment) {
 
 }  // namespace
 
-Lookahead::Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms, double shortest_part_ms)
-    : limits_(limits), window_ms_(window_ms), chunk_ms_(window_ms / 4), steps_(limits, servo_period_ms), division_(std::move(limits), shortest_part_ms) {}
+Lookahead::Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms)
+    : limits_(limits), window_ms_(window_ms), chunk_ms_(window_ms / 4), steps_(limits, servo_period_ms), division_(std::move(limits)) {}
 
 void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
   steps_.add(std::move(segment), prepared_);
@@ -38,7 +36,7 @@ void Lookahead::add(Segment segment, std::vector<TimedSegment>& out) {
     append(std::move(prepared));
     const bool is_first = planned_ == 0;   // of a path: nothing can be settled yet
     if (known_ms_ < (is_first ? window_ms_ : window_ms_ + chunk_ms_)) continue;
-    plan(0, false);
+    backward(0);
     if (is_first) continue;
     while (known() > 1 && known_ms_ - intervals_.front().stretch.duration_ms >= window_ms_) commit_first(0, out);
   }
@@ -67,16 +65,15 @@ void Lookahead::end_path(std::vector<TimedSegment>& out) {
     const bool stops = is_moving(wholes_.back().segment, true);
     if (stops && intervals_.back().start_bound == 0) split_last();
     const double end_beta = stops ? 0 : intervals_.back().limits.max_end_rate2;
-    plan(end_beta, true);
+    backward(end_beta);
     while (known() > 0) commit_first(end_beta, out);
   }
   known_ms_ = 0;
-  planned_ = settled_ = 0;
+  planned_ = 0;
   at_start_ = true;
 }
 
-/// In parts, where the program is certainly too fast: x is linear over each, and may reach its highest value between them. Elsewhere the
-/// limits may turn out not to matter; plan() and divide_first() do it where they do.
+/// In parts, where the program is too fast for the limits.
 void Lookahead::append(PreparedSegment prepared) {
   Whole& whole = wholes_.extend();
   whole.segment = std::move(prepared.segment);
@@ -86,15 +83,12 @@ void Lookahead::append(PreparedSegment prepared) {
   const Stretch all{0, segment.duration_ms};
   const Start start{prepared.speed_ratio, prepared.max_start_rate, prepared.stops_at_start}, inside{1, std::numeric_limits<double>::infinity(), false};
   find_rate_limits(segment, all, limits_, whole.accel_share, first_limits_);
-  const bool may_matter = !first_limits_.is_even && may_be_limited(segment, limits_, whole.accel_share);
-  const bool too_fast = may_matter && !first_limits_.allows(1, 1);
-  if (!too_fast) {
+  if (first_limits_.is_even || first_limits_.allows_full_rate) {
     Interval& next = append_interval(all, start);
     next.limits = first_limits_;
-    next.may_be_divided = may_matter;
     return bound_start(next, start);
   }
-  division_.start(segment, all, first_limits_, whole.accel_share);
+  division_.start(segment, first_limits_, whole.accel_share);
   for (Stretch part; division_.next(part);) {
     const Start& at = part.from_ms == 0 ? start : inside;
     Interval& next = append_interval(part, at);
@@ -111,8 +105,7 @@ Lookahead::Interval& Lookahead::append_interval(const Stretch& stretch, const St
   next.whole = first_whole_ + wholes_.size() - 1;
   next.stretch = stretch;
   next.speed_ratio2 = start.speed_ratio * start.speed_ratio;
-  next.beta = 0;
-  next.may_be_divided = false;
+  next.last = {};
   ++wholes_.back().parts;
   known_ms_ += stretch.duration_ms;
   return next;
@@ -129,89 +122,15 @@ void Lookahead::find_limits(Interval& interval) const {
   find_rate_limits(whole.segment, interval.stretch, limits_, whole.accel_share, interval.limits);
 }
 
-/// Into how many parts interval i is to be divided, with x from x0 to x1; 0: as its path asks for, as it has not been before.
-int Lookahead::parts_of(const Interval& interval, double x0, double x1) const {
-  if (interval.limits.is_even || std::min(x0, x1) >= kFullRate2) return 1;
-  if (interval.may_be_divided) return 0;
-  const Whole& whole = whole_of(interval);
-  return division_.parts_for(whole.segment, interval.stretch, x0, x1, whole.accel_share);
-}
-
-/// Appends the interval in parts, each with its limits; what holds at its start holds at the start of the first. count: see parts_of().
-void Lookahead::divide_interval(const Interval& interval, int count, std::vector<Interval>& parts) {
-  Whole& whole = whole_of(interval);
-  if (count == 0) division_.start(whole.segment, interval.stretch, interval.limits, whole.accel_share);
-  else division_.start_equal(whole.segment, interval.stretch, count, whole.accel_share);
-  --whole.parts;
-  double before_rate2 = 1;
-  for (Stretch stretch; division_.next(stretch); ++whole.parts) {
-    const bool is_first = stretch.from_ms == interval.stretch.from_ms;
-    Interval& part = parts.emplace_back();
-    part.whole = interval.whole;
-    part.stretch = stretch;
-    part.speed_ratio2 = is_first ? interval.speed_ratio2 : 1;
-    division_.find_limits(part.limits);
-    part.start_bound = is_first ? interval.start_bound : std::min(before_rate2, part.limits.max_start_rate2);
-    before_rate2 = part.limits.max_end_rate2;
-  }
-}
-
 /// x at the end of interval i, as far as stops ahead tell.
 double Lookahead::end_beta_of(int i, double end_beta) const {
   const auto next = static_cast<std::size_t>(i) + 1;
-  return i + 1 < known() ? intervals_[next].beta * intervals_[next].speed_ratio2 : end_beta;
-}
-
-/// beta of all intervals. Those that the newest segments do not touch any more are divided where x changes much over them or is held back: by
-/// beta as it is before any of them is divided, so that it makes no difference how the path came in.
-void Lookahead::plan(double end_beta, bool ends) {
-  const int changed = backward(end_beta), settled = ends ? known() : changed - 1;   // the end of the one before has changed, too
-  if (settled > settled_ && divide_to(settled, end_beta)) backward(end_beta);
-}
-
-/// Divides what is settled up to here. False if there was nothing to be divided.
-bool Lookahead::divide_to(int settled, double end_beta) {
-  const auto parts_needed = [&](int i) { return parts_of(intervals_[static_cast<std::size_t>(i)], intervals_[static_cast<std::size_t>(i)].beta, end_beta_of(i, end_beta)); };
-  int first = std::exchange(settled_, settled);
-  while (first < settled && parts_needed(first) == 1) ++first;
-  if (first == settled) return false;
-  taken_out_.clear();
-  for (int i = first; i < known(); ++i) {
-    Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    const int count = i < settled ? parts_needed(i) : 1;
-    if (count != 1) divide_interval(interval, count, taken_out_);
-    else taken_out_.push_back(std::move(interval));
-    if (i + 1 == settled) settled_ = first + static_cast<int>(taken_out_.size());
-  }
-  intervals_.shrink(static_cast<std::size_t>(first));
-  for (Interval& interval : taken_out_) intervals_.extend() = std::move(interval);
-  planned_ = first;
-  return true;
-}
-
-/// Motion comes to it slowly: it speeds up on parts.
-void Lookahead::divide_first(int count, double end_beta) {
-  taken_out_.clear();
-  divide_interval(intervals_.front(), count, taken_out_);
-  intervals_.pop_front();
-  double beta = intervals_.empty() ? end_beta : intervals_.front().beta * intervals_.front().speed_ratio2;
-  while (!taken_out_.empty()) {
-    Interval& part = taken_out_.back();
-    part.beta = part.limits.largest_start(part.start_bound, std::min(beta, part.limits.max_end_rate2));
-    beta = part.beta * part.speed_ratio2;
-    intervals_.push_front(std::move(part));
-    taken_out_.pop_back();
-    ++planned_;
-    ++settled_;
-  }
-  --planned_;
-  --settled_;
+  return i + 1 < known() ? intervals_[next].last.x0 * intervals_[next].speed_ratio2 : end_beta;
 }
 
 /// Motion has to stop at both ends of the last interval: in two halves it can move in between.
 void Lookahead::split_last() {
   planned_ = std::min(planned_, known() - 1);
-  settled_ = std::min(settled_, known() - 1);
   Interval second = intervals_.back();
   Interval& first = intervals_.back();
   first.stretch.duration_ms = second.stretch.duration_ms /= 2;
@@ -225,42 +144,37 @@ void Lookahead::split_last() {
   intervals_.extend() = std::move(second);
 }
 
-/// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are. Returns the first other.
-int Lookahead::backward(double end_beta) {
+/// beta of every interval from the last one back, until a value comes out as it was: all before it stand as they are.
+void Lookahead::backward(double end_beta) {
   double beta = end_beta;  // of x at the end of interval i
-  int i = known() - 1;
-  for (; i >= 0; --i) {
+  RateCourse like;
+  for (int i = known() - 1; i >= 0; --i) {
     Interval& interval = intervals_[static_cast<std::size_t>(i)];
-    const double start = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2));
-    if (i < planned_ && start == interval.beta) break;
-    interval.beta = start;
-    beta = start * interval.speed_ratio2;
+    const RateCourse last = interval.limits.largest_start(interval.start_bound, std::min(beta, interval.limits.max_end_rate2), like);
+    like = last;
+    const bool is_same = i < planned_ && last.x0 == interval.last.x0;
+    interval.last = last;
+    if (is_same) break;
+    beta = last.x0 * interval.speed_ratio2;
   }
   planned_ = known();
-  return i + 1;
 }
 
 void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
   runtime::poll_interruption();
-  if (at_start_) rate2_ = intervals_.front().beta;
-  at_start_ = false;
-  const auto next_rate2 = [&] {
-    const RateLimits& limits = intervals_.front().limits;
-    return limits.largest_end(rate2_, std::min(end_beta_of(0, end_beta), limits.max_end_rate2));
-  };
-  double next = next_rate2();
-  if (const int parts = parts_of(intervals_.front(), rate2_, next); parts != 1) {
-    divide_first(parts, end_beta);
-    next = next_rate2();
-  }
   const Interval& interval = intervals_.front();
+  if (at_start_) rate2_ = interval.last.x0;
+  at_start_ = false;
+  const double allowed = std::min(end_beta_of(0, end_beta), interval.limits.max_end_rate2);
+  const bool slows_down = rate2_ == interval.last.x0 && rate2_ > 0 && !interval.limits.is_even;
+  const RateCourse course = slows_down ? interval.last : interval.limits.largest_end(rate2_, allowed, last_course_);
+  last_course_ = course;
   const double ratio2 = known() > 1 ? intervals_[1].speed_ratio2 : 1;
-  const bool meets_beta = next == end_beta_of(0, end_beta) && (rate2_ < interval.beta || interval.beta == interval.start_bound);
-  emit(interval, rate2_, next, meets_beta, out);
-  rate2_ = next / ratio2;
+  const bool meets_beta = course.x1 == end_beta_of(0, end_beta) && (rate2_ < interval.last.x0 || interval.last.x0 == interval.start_bound);
+  emit(interval, course, meets_beta, out);
+  rate2_ = course.x1 / ratio2;
   known_ms_ -= interval.stretch.duration_ms;
   --planned_;
-  settled_ = std::max(0, settled_ - 1);
   if (--whole_of(interval).parts == 0) {
     wholes_.pop_front();
     ++first_whole_;
@@ -269,20 +183,22 @@ void Lookahead::commit_first(double end_beta, std::vector<TimedSegment>& out) {
 }
 
 /// may_switch: x may rise above both ends on the way.
-void Lookahead::emit(const Interval& interval, double x0, double x1, bool may_switch, std::vector<TimedSegment>& out) {
-  if (interval.limits.is_even) return emit_even(interval, x0, x1, out);
-  const bool worthwhile = may_switch && interval.limits.largest_end(x0, interval.limits.max_end_rate2) > kWorthwhileRise * x1;
-  if (!worthwhile || !emit_with_switch(interval, x0, x1, out)) emit_part(interval, interval.stretch, x0, x1, out);
+void Lookahead::emit(const Interval& interval, const RateCourse& course, bool may_switch, std::vector<TimedSegment>& out) {
+  if (interval.limits.is_even) return emit_even(interval, course.x0, course.x1, out);
+  const bool worthwhile = may_switch && course.x1 < interval.limits.max_end_rate2 &&
+                          interval.limits.largest_end(course.x0, interval.limits.max_end_rate2).x1 > kWorthwhileRise * course.x1;
+  if (!worthwhile || !emit_with_switch(interval, course.x0, course.x1, out)) emit_part(interval, interval.stretch, course, out);
 }
 
-/// A stretch of the interval's segment that is run through with x from x0 to x1; one of them is not zero.
-void Lookahead::emit_part(const Interval& interval, const Stretch& stretch, double x0, double x1, std::vector<TimedSegment>& out) const {
-  const double rate0 = std::sqrt(x0), rate1 = std::sqrt(x1);
+/// A stretch of the interval's segment that is run through; one of x0 and x1 is not zero.
+void Lookahead::emit_part(const Interval& interval, const Stretch& stretch, const RateCourse& course, std::vector<TimedSegment>& out) const {
+  const double rate0 = std::sqrt(course.x0), rate1 = std::sqrt(course.x1);
   TimedSegment& timed = out.emplace_back();
   take_part(whole_of(interval).segment, stretch.from_ms, stretch.duration_ms, timed.segment);
-  timed.duration_ms = 2 * stretch.duration_ms / (rate0 + rate1);
   timed.rate = rate0;
-  timed.rate_slope = (x1 - x0) / (2 * stretch.duration_ms);
+  timed.rate_slope = (course.x1 - course.x0 - course.bend) / (2 * stretch.duration_ms);
+  timed.slope_growth = course.bend / (stretch.duration_ms * stretch.duration_ms);
+  timed.duration_ms = time_between(rate0, rate1, stretch.duration_ms, timed.slope_growth);
 }
 
 /// Straight at constant programmed speed: x rises as the limits allow to the highest value or until it has to fall.
@@ -291,7 +207,7 @@ void Lookahead::emit_part(const Interval& interval, const Stretch& stretch, doub
 ///     x0  ___/          \___ x1
 void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const {
   const Stretch& all = interval.stretch;
-  const double width = interval.limits.bands.empty() ? std::numeric_limits<double>::infinity() : interval.limits.bands[0].width;
+  const double width = interval.limits.even_change;
   const double meeting = (x0 + x1 + width) / 2, peak = std::min(interval.limits.max_rate2(), meeting), ms_per_x = all.duration_ms / width;
   double rise_ms = (peak - x0) * ms_per_x, fall_ms = (peak - x1) * ms_per_x, flat_ms = 0;
   const bool stays = meeting > peak;   // at its highest value for some time
@@ -302,11 +218,11 @@ void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::v
     if (flat_ms > 0 && flat_ms < kMinPart_ms) (rise_ms > fall_ms ? rise_ms : fall_ms) += std::exchange(flat_ms, 0.0);
   }
   const bool is_one = stays ? flat_ms < 0 : std::min(rise_ms, fall_ms) < kMinPart_ms;
-  if (is_one || flat_ms == all.duration_ms) return emit_part(interval, all, x0, x1, out);
+  if (is_one || flat_ms == all.duration_ms) return emit_part(interval, all, {x0, x1, 0}, out);
   const double fall_from_ms = rise_ms + flat_ms;
-  if (rise_ms > 0) emit_part(interval, {all.from_ms, rise_ms}, x0, fall_from_ms < all.duration_ms || flat_ms > 0 ? peak : x1, out);
-  if (flat_ms > 0) emit_part(interval, {all.from_ms + rise_ms, flat_ms}, rise_ms > 0 ? peak : x0, fall_ms > 0 ? peak : x1, out);
-  if (fall_ms > 0) emit_part(interval, {all.from_ms + fall_from_ms, all.duration_ms - fall_from_ms}, fall_from_ms > 0 ? peak : x0, x1, out);
+  if (rise_ms > 0) emit_part(interval, {all.from_ms, rise_ms}, {x0, fall_from_ms < all.duration_ms || flat_ms > 0 ? peak : x1, 0}, out);
+  if (flat_ms > 0) emit_part(interval, {all.from_ms + rise_ms, flat_ms}, {rise_ms > 0 ? peak : x0, fall_ms > 0 ? peak : x1, 0}, out);
+  if (fall_ms > 0) emit_part(interval, {all.from_ms + fall_from_ms, all.duration_ms - fall_from_ms}, {fall_from_ms > 0 ? peak : x0, x1, 0}, out);
 }
 
 /// Within this interval motion changes from speeding up to slowing down. One more node where the two meet makes both complete:
@@ -317,31 +233,38 @@ void Lookahead::emit_even(const Interval& interval, double x0, double x1, std::v
 /// False where that is no faster; nothing is appended then.
 bool Lookahead::emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) {
   constexpr int kSteps = 20;
+  constexpr double kLittle = 1e-3;
   const Whole& whole = whole_of(interval);
   const double from_ms = interval.stretch.from_ms, whole_ms = interval.stretch.duration_ms;
   const RateLimits& limits = interval.limits;
-  double low_ms = 0, low_over = x0 - limits.largest_start(limits.max_start_rate2, x1);         // what can be reached over what may be: below 0 at the start,
-  double high_ms = whole_ms, high_over = limits.largest_end(x0, limits.max_end_rate2) - x1;  // above 0 at the end
-  if (low_over >= 0 || high_over <= 0) return false;
-  double at_ms = 0, peak = 0;
+  double low_ms = 0, low_over = x0 - limits.largest_start(limits.max_start_rate2, x1).x0;         // what can be reached over what may be: below 0 at the start,
+  double high_ms = whole_ms, high_over = limits.largest_end(x0, limits.max_end_rate2).x1 - x1;  // above 0 at the end
+  if (low_over >= -kLittle * x0 || high_over <= kLittle * x1) return false;
+  double at_ms = 0;
+  RateCourse rise, fall;
   bool was_low = false;
   for (int i = 0; i < kSteps; ++i) {  // false position; an end that stays counts half (Illinois)
     at_ms = std::clamp(low_ms - low_over * (high_ms - low_ms) / (high_over - low_over), 0.001 * whole_ms, 0.999 * whole_ms);
     find_rate_limits(whole.segment, {from_ms, at_ms}, limits_, whole.accel_share, first_limits_);
     find_rate_limits(whole.segment, {from_ms + at_ms, whole_ms - at_ms}, limits_, whole.accel_share, second_limits_);
-    const double reached = first_limits_.largest_end(x0, first_limits_.max_end_rate2), allowed = second_limits_.largest_start(second_limits_.max_start_rate2, x1), over = reached - allowed;
-    peak = std::min(reached, allowed);
-    if (std::abs(over) <= kSamePeak * peak) break;
+    rise = first_limits_.largest_end(x0, first_limits_.max_end_rate2);
+    fall = second_limits_.largest_start(second_limits_.max_start_rate2, x1);
+    const double over = rise.x1 - fall.x0;
+    if (std::abs(over) <= kSamePeak * std::min(rise.x1, fall.x0)) break;
     if (i > 0 && (over < 0) == was_low) (was_low ? high_over : low_over) /= 2;
     was_low = over < 0;
     (was_low ? low_ms : high_ms) = at_ms;
     (was_low ? low_over : high_over) = over;
   }
   if (std::min(at_ms, whole_ms - at_ms) < kMinPart_ms) return false;
+  const double peak = std::min(rise.x1, fall.x0);
   const bool faster = peak > x0 + (x1 - x0) * at_ms / whole_ms;
-  if (!faster || !first_limits_.allows(x0, peak) || !second_limits_.allows(peak, x1)) return false;
-  emit_part(interval, {from_ms, at_ms}, x0, peak, out);
-  emit_part(interval, {from_ms + at_ms, whole_ms - at_ms}, peak, x1, out);
+  if (!faster) return false;
+  rise = first_limits_.largest_end(x0, peak);
+  fall = second_limits_.largest_end(peak, x1);
+  if (rise.x1 != peak || fall.x1 != x1) return false;
+  emit_part(interval, {from_ms, at_ms}, rise, out);
+  emit_part(interval, {from_ms + at_ms, whole_ms - at_ms}, fall, out);
   return true;
 }
 

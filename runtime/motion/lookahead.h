@@ -1,5 +1,5 @@
 // Hop 8: the same path, times stretched until every motor limit holds. Time-optimal path parametrisation: x = (ds/dt)^2 over
-// programmed time s is piecewise linear between the segments' ends, never above 1, and as large as the limits allow.
+// programmed time s is a quadratic polynomial between the nodes, never above 1, and as large as the limits allow (rate_limits.h).
 // A backward pass over the known segments gives the largest x at each node from which motion can still stop (beta); a forward
 // pass then takes the largest reachable x below it.
 //
@@ -28,8 +28,7 @@ class Lookahead : public TimeLaw {
  public:
   /// limits: [motor]. window_ms: programmed time that is always known beyond what is committed (LHDistance * SegMoveTime; in
   /// time, because nodes at corners and in arcs make some segments shorter).
-  /// shortest_part_ms: executed time to which a segment is divided at most where the limits hold it back.
-  Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms, double shortest_part_ms = 1);
+  Lookahead(std::vector<MotorLimits> limits, double window_ms, double servo_period_ms);
 
   void add(Segment segment, std::vector<TimedSegment>& out) override;
   void finish(std::vector<TimedSegment>& out) override;
@@ -51,8 +50,7 @@ class Lookahead : public TimeLaw {
     Stretch stretch{0, 0};      // of its segment
     double speed_ratio2 = 1;    // x at the end of the interval before is this times x at its start
     double start_bound = 1;     // of x at its start: limits of both neighbours, 0 where motion has to stop
-    double beta = 0;            // of x at its start
-    bool may_be_divided = false;
+    RateCourse last;            // beta at its start, and how motion slows down from there
     RateLimits limits;
   };
   struct Start { double speed_ratio, max_rate; bool stops; };   // of a segment
@@ -63,21 +61,16 @@ class Lookahead : public TimeLaw {
   Interval& append_interval(const Stretch& stretch, const Start& start);
   void bound_start(Interval& interval, const Start& start);
   void find_limits(Interval& interval) const;
-  int parts_of(const Interval& interval, double x0, double x1) const;
-  void divide_interval(const Interval& interval, int count, std::vector<Interval>& parts);
   double end_beta_of(int i, double end_beta) const;
-  void plan(double end_beta, bool ends);
-  bool divide_to(int settled, double end_beta);
-  void divide_first(int count, double end_beta);
   void rest(Segment segment, std::vector<TimedSegment>& out);
   void end_path(std::vector<TimedSegment>& out);
   void split_last();
-  int backward(double end_beta);
+  void backward(double end_beta);
   void commit_first(double end_beta, std::vector<TimedSegment>& out);
-  void emit(const Interval& interval, double x0, double x1, bool may_switch, std::vector<TimedSegment>& out);
+  void emit(const Interval& interval, const RateCourse& course, bool may_switch, std::vector<TimedSegment>& out);
   void emit_even(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out) const;
   bool emit_with_switch(const Interval& interval, double x0, double x1, std::vector<TimedSegment>& out);
-  void emit_part(const Interval& interval, const Stretch& stretch, double x0, double x1, std::vector<TimedSegment>& out) const;
+  void emit_part(const Interval& interval, const Stretch& stretch, const RateCourse& course, std::vector<TimedSegment>& out) const;
 
   std::vector<MotorLimits> limits_;
   double window_ms_, chunk_ms_;
@@ -88,11 +81,10 @@ class Lookahead : public TimeLaw {
   std::uint64_t first_whole_ = 0;
   Ring<Interval> intervals_;
   RateLimits first_limits_, second_limits_;   // of the parts that emit_with_switch() tries
-  std::vector<Interval> taken_out_;
   double known_ms_ = 0;         // their programmed time
   int planned_ = 0;             // intervals whose beta comes from an earlier backward pass
-  int settled_ = 0;             // intervals that are divided as far as planning asks for it
   double rate2_ = 0;            // x at the start of the first interval
+  RateCourse last_course_;      // the latest that was committed
   bool at_start_ = true;
 };
 

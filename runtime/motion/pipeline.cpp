@@ -21,8 +21,6 @@ namespace {
 using runtime::Fault;
 
 constexpr double kShortestSegment_ms = 1e-6;
-/// The lookahead need not divide time finer than this part of a segment, or 1 ms.
-constexpr double kPartsOfSegment = 0.2;
 
 /// Unsegmented pvt: the cubic in u of each motor, u = u0 + rate * time.
 Segment pvt_segment(const PathPiece& piece) {
@@ -115,7 +113,7 @@ void Pipeline::State::build_stages() {
   if (segmented() && config.lookahead) {
     const double window_ms = config.lookahead_segments * config.segment_time_ms;
     if (config.limit_jerk) lookahead = std::make_unique<JerkLookahead>(config.limits, window_ms, config.servo_period_ms);
-    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms, std::min(1.0, kPartsOfSegment * config.segment_time_ms));
+    else lookahead = std::make_unique<Lookahead>(config.limits, window_ms, config.servo_period_ms);
   }
 }
 

@@ -104,7 +104,7 @@ std::string to_text(const Segment& segment) {
 std::string to_text(const TimedSegment& segment) {
   return fmt::format("{} line {} {} {} {} {} {}{}", segment.segment.command, segment.segment.source.line, segment.start_ms,
                      segment.duration_ms, segment.segment.duration_ms, segment.rate,
-                     segment.rate + segment.rate_slope * segment.duration_ms, motor_words(segment.segment, segment.segment.duration_ms));
+                     segment.rate_at(segment.duration_ms), motor_words(segment.segment, segment.segment.duration_ms));
 }
 
 }  // namespace pmac::motion

@@ -1,64 +1,71 @@
-// What the motor limits say about the rate of programmed time over one stretch of a segment. With x = (ds/dt)^2, which changes linearly
-// over the stretch from x0 to x1, motor acceleration is
+// What the motor limits say about the rate of programmed time over one part of a segment. x = (ds/dt)^2 is a quadratic polynomial over the
+// part: the acceleration of programmed time, x'/2, changes linearly from a0 to a1. Motor acceleration is
 //
-//   q'' x + q' (x1 - x0) / (2 h)          ' = d/ds, h = programmed duration
+//   q'' x + q' x' / 2          ' = d/ds
 //
-// a quadratic polynomial of s whose three Bernstein coefficients are linear in (x0, x1). A polynomial stays between its
-// Bernstein coefficients, so limits on these hold everywhere in the stretch and not only at sampled places. Each is a band:
+// a cubic polynomial of s whose four Bernstein coefficients are linear in x0, x1 and the bend h (a1 - a0), h = programmed duration. A polynomial stays between its
+// Bernstein coefficients, so limits on these hold everywhere in the part and not only at sampled places:
 //
-//   x1 |      /     /          slope * x0 - width <= x1 <= slope * x0 + width
-//      |     /     /
-//      |____/_____/__ x0
+//   |by_start * x0 + by_end * x1 + by_bend * bend| <= 1
 //
-// Where every motor runs straight at a constant programmed speed there is a single one, of slope 1, for a stretch of any length.
+// All that is allowed is convex and contains x = 0: what is allowed stays so when x0, x1 and the bend shrink together.
+// Where every motor runs straight at a constant programmed speed x changes by no more than `even_change`, over a part of any length.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "runtime/motion/segment.h"
 
 namespace pmac::motion {
 
-struct RateBand { double slope, width; };
+/// How a part is run through.
+struct RateCourse {
+  double x0 = 0, x1 = 0;          // at its start and end
+  double bend = 0;                // acceleration of programmed time at the end less at the start, times the duration of the part
+  std::array<int, 2> deciding{};  // the limits that it is held by, where these are two; 0: others are
+};
+
+/// One motor over a part, in acceleration limits: velocity at the start over the duration of the part, acceleration at both ends.
+struct MotorShare { double velocity, start_accel, end_accel; };
 
 /// As far as it goes a vector; a few are kept in place.
-class RateBands {
+class MotorShares {
  public:
-  const RateBand* begin() const { return count_ <= few_.size() ? few_.data() : many_.begin(); }
-  const RateBand* end() const { return begin() + count_; }
+  const MotorShare* begin() const { return count_ <= few_.size() ? few_.data() : many_.begin(); }
+  const MotorShare* end() const { return begin() + count_; }
   std::size_t size() const { return count_; }
-  bool empty() const { return count_ == 0; }
-  const RateBand& operator[](std::size_t i) const { return begin()[i]; }
   void clear() { count_ = 0; }
-  void push_back(const RateBand& band) {
-    if (count_ < few_.size()) few_[count_] = band;
-    else push_to_many(band);
+  void push_back(const MotorShare& share) {
+    if (count_ < few_.size()) few_[count_] = share;
+    else push_to_many(share);
     ++count_;
   }
 
  private:
-  void push_to_many(const RateBand& band);
+  void push_to_many(const MotorShare& share);
 
-  std::array<RateBand, 9> few_;   // as far as count_ goes; three motors' worth
-  Row<RateBand> many_;            // all, where they are more
+  std::array<MotorShare, 3> few_;   // as far as count_ goes
+  Row<MotorShare> many_;            // all, where they are more
   std::uint32_t count_ = 0;
 };
 
 struct RateLimits {
-  RateBands bands;                // those that can matter: x is never above 1
-  double max_start_rate2 = 1;     // of x0: never ahead of the program, the speed limits, and bands that stand upright
-  double max_end_rate2 = 1;       // of x1: the same without the last
-  bool is_even = false;           // the motors run straight at constant speed: at most one band, of slope 1, whether it can matter or not
+  MotorShares motors;               // those that move
+  double duration_ms = 0;           // programmed
+  double max_start_rate2 = 1;       // of x0: never ahead of the program, and the speed limits, which hold as long as x is below the line
+  double max_end_rate2 = 1;         // from this to that of x1
+  double even_change = std::numeric_limits<double>::infinity();
+  bool is_even = false;             // the motors run straight at constant speed
+  bool allows_full_rate = false;    // from end to end
 
-  /// Largest x0 for which an x1 in [0, x1_max] exists; x0 <= x0_max.
-  double largest_start(double x0_max, double x1_max) const;
-  /// Largest x1 <= x1_max that goes with x0.
-  double largest_end(double x0, double x1_max) const;
+  /// The largest x0 <= x0_max from which some x1 in [0, x1_max] can be reached, and how. like: of a part nearby, where it is sooner found.
+  RateCourse largest_start(double x0_max, double x1_max, const RateCourse& like = {}) const;
+  /// The largest x1 <= x1_max that can be reached from x0, and how.
+  RateCourse largest_end(double x0, double x1_max, const RateCourse& like = {}) const;
   /// Highest x at both ends.
   double max_rate2() const { return max_start_rate2 < max_end_rate2 ? max_start_rate2 : max_end_rate2; }
-  /// Both ends are within all limits.
-  bool allows(double x0, double x1) const;
 };
 
 /// Part of a segment, in programmed time from its start.
@@ -69,6 +76,9 @@ struct MotorRates { double velocity, acceleration; };
 
 /// At d ms from the start of the segment. rates: [motor].
 void find_motor_rates(const Segment& segment, double d, std::vector<MotorRates>& rates);
+
+/// Motors run straight at constant speed but for rounding: their own acceleration is nothing of their limit, and their speed is the same everywhere.
+bool is_even(const Segment& segment, const std::vector<MotorLimits>& limits);
 
 /// The limits of a part that is duration_ms long and not even, from the rates at both of its ends. Replaces what stands in `result`.
 void find_rate_limits(const std::vector<MotorRates>& from, const std::vector<MotorRates>& to, double duration_ms, const std::vector<MotorLimits>& limits,

@@ -14,32 +14,32 @@ class Ring {
  public:
   std::size_t size() const { return count_; }
   bool empty() const { return count_ == 0; }
-  T& operator[](std::size_t i) { return slots_[(first_ + i) & mask()]; }
-  const T& operator[](std::size_t i) const { return slots_[(first_ + i) & mask()]; }
+  T& operator[](std::size_t i) { return slots_[(first_ + i) & (room_ - 1)]; }
+  const T& operator[](std::size_t i) const { return slots_[(first_ + i) & (room_ - 1)]; }
   T& front() { return slots_[first_]; }
   const T& front() const { return slots_[first_]; }
   T& back() { return (*this)[count_ - 1]; }
   const T& back() const { return (*this)[count_ - 1]; }
 
   void push_back(T value) {
-    if (count_ == slots_.size()) grow();
+    if (count_ == room_) grow();
     ++count_;
     back() = std::move(value);
   }
   /// A new last one, with whatever its place held before.
   T& extend() {
-    if (count_ == slots_.size()) grow();
+    if (count_ == room_) grow();
     ++count_;
     return back();
   }
   void push_front(T value) {
-    if (count_ == slots_.size()) grow();
-    first_ = (first_ + slots_.size() - 1) & mask();
+    if (count_ == room_) grow();
+    first_ = (first_ + room_ - 1) & (room_ - 1);
     ++count_;
     front() = std::move(value);
   }
   void pop_front() {
-    first_ = (first_ + 1) & mask();
+    first_ = (first_ + 1) & (room_ - 1);
     --count_;
   }
   void pop_back() { --count_; }
@@ -60,15 +60,16 @@ class Ring {
   }
 
  private:
-  std::size_t mask() const { return slots_.size() - 1; }   // a power of two, less one
   void grow() {
     std::vector<T> larger(slots_.empty() ? 16 : 2 * slots_.size());
     for (std::size_t i = 0; i < count_; ++i) larger[i] = std::move((*this)[i]);
     slots_ = std::move(larger);
+    room_ = slots_.size();
     first_ = 0;
   }
 
   std::vector<T> slots_;
+  std::size_t room_ = 0;   // size of slots_, a power of two, kept to save a division
   std::size_t first_ = 0, count_ = 0;
 };
 

@@ -52,23 +52,60 @@ inline Segment part_of(const Segment& segment, double from_ms, double duration_m
   return part;
 }
 
-/// A segment and when it is executed. Programmed time runs at a rate 0..1 that changes evenly:
-/// d(t) = rate * t + rate_slope * t^2 / 2 with t = time - start_ms.
+/// A segment and when it is executed. Programmed time d runs at a rate 0..1, the square of which is a quadratic polynomial of d; the rate's
+/// own slope is so a linear function of d, and with t = time - start_ms
+///
+///   d(t) = rate * S(t) + rate_slope * C(t)        S = sinh(wt)/w, C = (cosh(wt) - 1)/w^2, w^2 = slope_growth
+///
+/// (sin and cos below 0). Without growth the rate changes evenly: S = t, C = t^2/2.
 struct TimedSegment {
   Segment segment;
   double start_ms = 0;              // pipeline time
   double duration_ms = 0;
   double rate = 1;                  // at the start
-  double rate_slope = 0;            // 1/ms
+  double rate_slope = 0;            // at the start; 1/ms
+  double slope_growth = 0;          // of the slope over programmed time; 1/ms^2
   double jerk_step = 0;             // --limit-jerk: the jerk that a step of acceleration at the start makes at servo rate, in limits; 0: none
-  double programmed_ms(double t) const { return t * (rate + t * rate_slope / 2); }
+  double programmed_ms(double t) const;
+  double rate_at(double t) const;
+  /// Square of the rate, and its slope, where d of the programmed time has passed.
+  double rate2_after(double d) const { return std::max(0.0, rate * rate + d * (2 * rate_slope + slope_growth * d)); }
+  double slope_after(double d) const { return rate_slope + slope_growth * d; }
 };
+
+/// S and C above.
+struct GrowthSums { double s, c; };
+
+/// The same for a large w t.
+GrowthSums far_growth_sums(double growth, double t);
+
+inline GrowthSums growth_sums(double growth, double t) {
+  constexpr double kNear = 0.25;    // series up to here: the next term is below 1e-14 of the sum
+  const double z = growth * t * t;
+  if (std::abs(z) > kNear) return far_growth_sums(growth, t);
+  return {t * (1 + z / 6 * (1 + z / 20 * (1 + z / 42 * (1 + z / 72 * (1 + z / 110))))), t * t / 2 * (1 + z / 12 * (1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132)))))};
+}
+
+inline double TimedSegment::programmed_ms(double t) const {
+  if (slope_growth == 0) return t * (rate + t * rate_slope / 2);
+  const GrowthSums sums = growth_sums(slope_growth, t);
+  return rate * sums.s + rate_slope * sums.c;
+}
+
+inline double TimedSegment::rate_at(double t) const {
+  if (slope_growth == 0) return rate + t * rate_slope;
+  const GrowthSums sums = growth_sums(slope_growth, t);
+  return rate * (1 + slope_growth * sums.c) + rate_slope * sums.s;
+}
+
+/// How long d of programmed time takes where the rate changes from rate0 to rate1 as above; they are not both 0. With y = d / (rate0 + rate1):
+/// 2 atanh(w y) / w, which is 2 y where the rate changes evenly.
+double time_between(double rate0, double rate1, double d, double growth);
 
 /// Time since the start of the segment at which d of its programmed time has passed.
 inline double time_at(const TimedSegment& segment, double d) {
-  const double end_rate2 = segment.rate * segment.rate + 2 * segment.rate_slope * d;
-  const double rates = segment.rate + std::sqrt(std::max(0.0, end_rate2));
-  return rates > 0 ? 2 * d / rates : 0;
+  const double end_rate = std::sqrt(segment.rate2_after(d));
+  return segment.rate + end_rate > 0 ? time_between(segment.rate, end_rate, d, segment.slope_growth) : 0;
 }
 
 }  // namespace pmac::motion

@@ -7,60 +7,24 @@
 namespace pmac::motion {
 namespace {
 
-/// Velocities may change by so much over a part, in speeds of the fastest motor.
-constexpr double kChange = 0.05;
-/// The same where a part takes no longer than the shortest that is asked for.
-constexpr double kChangeOfShort = 0.06;
+/// Velocities may change by so much over a part, in speeds of the motor that is the fastest for its acceleration limit.
+constexpr double kChange = 0.2;
+/// Where the program changes the speed along its path beyond this many limits, x makes up for that: it has to be the nearer to what the path
+/// asks for, by up to this factor.
+constexpr double kManyLimits = 5, kFiner = 4;
 /// A part is not shorter than one of so many equal ones.
 constexpr double kMostParts = 64;
 
 }  // namespace
 
-bool may_be_limited(const Segment& segment, const std::vector<MotorLimits>& limits, double accel_share) {
-  constexpr double kFar = 0.1;
-  const double h = segment.duration_ms;
-  for (std::size_t m = 0; m < std::min(segment.motor.size(), limits.size()); ++m) {
-    const MotorCubic& q = segment.motor[m];
-    const double accel = std::max(std::abs(q.acceleration(0)), std::abs(q.acceleration(h))), speed = limits[m].max_speed_mu_ms;
-    if (accel * limits[m].inv_amax_ms2_mu > kFar * accel_share) return true;
-    if (speed > 0 && (std::abs(q.c1) > speed || std::abs(q.velocity(h / 2)) > speed || std::abs(q.velocity(h)) > speed)) return true;
-  }
-  return false;
-}
-
-void Division::start(const Segment& segment, const Stretch& stretch, const RateLimits& found, double accel_share) {
+void Division::start(const Segment& segment, const RateLimits& found, double accel_share) {
   segment_ = &segment;
   accel_share_ = accel_share;
-  at_ms_ = stretch.from_ms;
-  end_ms_ = stretch.from_ms + stretch.duration_ms;
-  least_ms_ = stretch.duration_ms / kMostParts;
-  longest_ms_ = std::max(least_ms_, stretch.duration_ms * std::sqrt(found.max_rate2()));   // each takes no longer than the stretch at full rate
-  equal_ms_ = 0;
-  find_motor_rates(segment, at_ms_, to_);
-}
-
-void Division::start_equal(const Segment& segment, const Stretch& stretch, int parts, double accel_share) {
-  segment_ = &segment;
-  accel_share_ = accel_share;
-  at_ms_ = stretch.from_ms;
-  end_ms_ = stretch.from_ms + stretch.duration_ms;
-  equal_ms_ = least_ms_ = stretch.duration_ms / parts;
-  find_motor_rates(segment, at_ms_, to_);
-}
-
-/// Acceleration of a motor is q'' x + q' x' / 2. With x' the same over the stretch it changes by q''' x h + 3/2 q'' x' h.
-int Division::parts_for(const Segment& segment, const Stretch& stretch, double x0, double x1, double accel_share) const {
-  constexpr double kLoss = 0.06, kMost = 16, kShortestOfShort = 0.05;
-  const double highest = std::max(x0, x1), change = 1.5 * std::abs(x1 - x0), to_ms = stretch.from_ms + stretch.duration_ms;
-  double loss = 0;   // in limits
-  for (std::size_t m = 0; m < std::min(segment.motor.size(), limits_.size()); ++m) {
-    const double a0 = segment.motor[m].acceleration(stretch.from_ms), a1 = segment.motor[m].acceleration(to_ms);
-    loss = std::max(loss, limits_[m].inv_amax_ms2_mu * (std::abs(a1 - a0) * highest + std::max(std::abs(a0), std::abs(a1)) * change));
-  }
-  const double wanted = loss / (kLoss * accel_share);
-  if (wanted <= 1) return 1;
-  const double takes_ms = 2 * stretch.duration_ms / (std::sqrt(x0) + std::sqrt(x1));
-  return static_cast<int>(std::ceil(std::min({wanted, kMost, std::max(1.0, takes_ms / (kShortestOfShort * shortest_ms_))})));
+  at_ms_ = 0;
+  end_ms_ = segment.duration_ms;
+  least_ms_ = end_ms_ / kMostParts;
+  longest_ms_ = std::max(least_ms_, end_ms_ * std::sqrt(found.max_rate2()));   // each takes no longer than the segment at full rate
+  find_motor_rates(segment, 0, to_);
 }
 
 bool Division::next(Stretch& part) {
@@ -68,39 +32,54 @@ bool Division::next(Stretch& part) {
   const double left_ms = end_ms_ - at_ms_;
   if (left_ms <= 0) return false;
   std::swap(from_, to_);
-  double parts = std::ceil(left_ms / (equal_ms_ > 0 ? equal_ms_ : wanted_ms()) - kRounding);
+  double parts = std::ceil(left_ms / wanted_ms() - kRounding);
   for (;; parts *= 2) {
     part_ms_ = left_ms / parts;
     find_motor_rates(*segment_, parts == 1 ? end_ms_ : at_ms_ + part_ms_, to_);
-    if (part_ms_ <= 2 * least_ms_ || change() <= kTooMuch * kChangeOfShort) break;   // mostly: accelerations may grow
+    if (part_ms_ <= 2 * least_ms_ || change() <= kTooMuch * kChange) break;   // mostly: accelerations may grow
   }
   part = {at_ms_, part_ms_};
   at_ms_ = parts == 1 ? end_ms_ : at_ms_ + part_ms_;
   return true;
 }
 
-/// How long the part that begins here may be, as far as the rates here tell.
-double Division::wanted_ms() const {
-  double speed = 0, accel = 0, most = accel_share_;   // most: acceleration in limits
-  for (std::size_t m = 0; m < from_.size(); ++m) {
-    const double own = std::abs(from_[m].acceleration);
-    speed = std::max(speed, std::abs(from_[m].velocity));
-    accel = std::max(accel, own);
-    if (m < limits_.size()) most = std::max(most, own * limits_[m].inv_amax_ms2_mu);
+/// Speed along the path, and its change, in limits of the motors.
+Division::Along Division::along(const std::vector<MotorRates>& rates) const {
+  double square = 0, rise = 0, most = 0;
+  for (std::size_t m = 0; m < std::min(rates.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu, speed = inverse * rates[m].velocity, accel = inverse * rates[m].acceleration;
+    square += speed * speed;
+    rise += speed * accel;
+    most = std::max(most, std::abs(accel));
   }
-  if (accel == 0) return longest_ms_;
-  const double to_change = speed / accel, short_ms = shortest_ms_ * std::sqrt(accel_share_ / most);   // at the highest rate that this acceleration alone leaves
-  return std::clamp(std::max(kChange * to_change, std::min(short_ms, kChangeOfShort * to_change)), least_ms_, longest_ms_);
+  const double speed = std::sqrt(square), finer = std::clamp(std::sqrt(most / kManyLimits), 1.0, kFiner);
+  return {speed, speed > 0 ? std::abs(rise) / speed : 0, finer};
 }
 
-/// How much velocities change over the part, in speeds of the fastest motor.
+/// How long the part that begins here may be, as far as the rates here tell.
+double Division::wanted_ms() const {
+  const Along here = along(from_);
+  double speed = 0, accel = 0, to_change_ms = here.accel > 0 ? here.speed / (here.accel * here.finer) : std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < std::min(from_.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu;
+    speed = std::max(speed, inverse * std::abs(from_[m].velocity));
+    accel = std::max(accel, inverse * std::abs(from_[m].acceleration));
+  }
+  if (accel > 0) to_change_ms = std::min(to_change_ms, speed / accel);
+  return std::clamp(kChange * to_change_ms, least_ms_, longest_ms_);
+}
+
+/// How much velocities change over the part, in speeds of the motor that is the fastest for its acceleration limit.
 double Division::change() const {
   double change = 0, speed = 0;
-  for (std::size_t m = 0; m < from_.size(); ++m) {
-    change = std::max(change, std::abs(to_[m].velocity - from_[m].velocity));
-    speed = std::max(speed, std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity)));
+  for (std::size_t m = 0; m < std::min(from_.size(), limits_.size()); ++m) {
+    const double inverse = limits_[m].inv_amax_ms2_mu;
+    change = std::max(change, inverse * std::abs(to_[m].velocity - from_[m].velocity));
+    speed = std::max(speed, inverse * std::max(std::abs(to_[m].velocity), std::abs(from_[m].velocity)));
   }
-  return speed > 0 ? change / speed : 0;
+  const Along start = along(from_), end = along(to_);
+  const double along = std::max(start.finer, end.finer) * std::abs(end.speed - start.speed), fastest = std::max(start.speed, end.speed);
+  return speed > 0 ? std::max(change / speed, along / fastest) : 0;
 }
 
 }  // namespace pmac::motion

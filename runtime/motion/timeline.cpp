@@ -15,20 +15,10 @@ constexpr std::size_t kFew = 6;      // samples of a segment for which the prepa
 
 double end_of(const TimedSegment& segment) { return segment.start_ms + segment.duration_ms; }
 
-/// position: [motor][stride].
-void evaluate_few(const Segment& segment, std::span<const double> at, double* position, std::size_t stride) {
-  for (const MotorCubic& q : segment.motor) {
-    switch (at.size()) {
-      case 6: position[5] = q.position(at[5]); [[fallthrough]];
-      case 5: position[4] = q.position(at[4]); [[fallthrough]];
-      case 4: position[3] = q.position(at[3]); [[fallthrough]];
-      case 3: position[2] = q.position(at[2]); [[fallthrough]];
-      case 2: position[1] = q.position(at[1]); [[fallthrough]];
-      case 1: position[0] = q.position(at[0]); break;
-      default: break;
-    }
-    position += stride;
-  }
+/// Programmed time of a segment t after its start; it stands at its ends.
+double programmed_inside(const TimedSegment& segment, double t) {
+  const double d = segment.programmed_ms(t), end = segment.segment.duration_ms;
+  return t <= 0 ? 0 : d < end ? d : end;
 }
 
 }  // namespace
@@ -74,7 +64,7 @@ Segment& Timeline::extend(double start_ms, double duration_ms) {
 void Timeline::note_end() {
   if (std::exchange(end_is_noted_, true)) return;
   const TimedSegment& last = known_.back().timed;
-  const double rate = last.rate + last.rate_slope * last.duration_ms, programmed_ms = last.segment.duration_ms;
+  const double rate = last.rate_at(last.duration_ms), programmed_ms = last.segment.duration_ms;
   end_velocity_mu_ms_.resize(rest_mu_.size());
   for (std::size_t m = 0; m < rest_mu_.size(); ++m) {
     rest_mu_[m] = last.segment.motor[m].position(programmed_ms);
@@ -127,6 +117,10 @@ void Timeline::sample(std::span<const double> time_ms, std::span<double> positio
   for (std::size_t done = 0; done < count;) {
     stand_at(time_ms[done]);
     const bool is_over = cursor_ == known_.size();
+    if (!is_over && velocity_mu_ms.empty() && are_few(known_[cursor_].timed, time_ms, done)) {
+      done = sample_few(known_[cursor_].timed, time_ms, done, position_mu);
+      continue;
+    }
     const std::size_t last = is_over ? rest_until(time_ms, done) : segment_until(known_[cursor_].timed, time_ms, done);
     if (is_over) sample_rest(time_ms, done, last, position_mu, velocity_mu_ms);
     else sample_segment(known_[cursor_].timed, time_ms, done, last, position_mu, velocity_mu_ms);
@@ -144,6 +138,28 @@ void Timeline::pass(double time_ms) {
 void Timeline::stand_at(double time_ms) {
   while (cursor_ > 0 && end_of(known_[cursor_ - 1].timed) > time_ms) --cursor_;
   while (cursor_ < known_.size() && end_of(known_[cursor_].timed) <= time_ms) ++cursor_;
+}
+
+/// Of ascending times, from `first` on, no more than kFew lie before the end of the segment.
+bool Timeline::are_few(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first) {
+  return first + kFew >= time_ms.size() || time_ms[first + kFew] >= end_of(segment);
+}
+
+/// Positions at those times, one after the other; answers one behind the last of them.
+std::size_t Timeline::sample_few(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first, std::span<double> position_mu) {
+  const std::size_t count = time_ms.size(), most = std::min(count, first + kFew);
+  const double end_ms = end_of(segment), first_ms = time_ms[first];
+  std::size_t at = first;
+  do {
+    const double d = programmed_inside(segment, time_ms[at] - segment.start_ms);
+    double* position = position_mu.data() + at;
+    for (const MotorCubic& q : segment.segment.motor) {
+      *position = q.position(d);
+      position += count;
+    }
+    ++at;
+  } while (at < most && time_ms[at] < end_ms && time_ms[at] >= first_ms);
+  return at;
 }
 
 /// One behind the last of the ascending times, from `first` on, that lies before the end of the segment; at most kBlock of them.
@@ -182,11 +198,11 @@ void Timeline::sample_segment(const TimedSegment& segment, std::span<const doubl
   const std::size_t n = last - first, count = time_ms.size();
   const double segment_ms = segment.start_ms, end = segment.segment.duration_ms, rate = segment.rate, half_slope = segment.rate_slope / 2;
   const double* time = time_ms.data() + first;
+  const bool is_even = segment.slope_growth == 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double t = time[k] - segment_ms, d = t * (rate + t * half_slope), inside = d < end ? d : end;
+    const double t = time[k] - segment_ms, d = is_even ? t * (rate + t * half_slope) : segment.programmed_ms(t), inside = d < end ? d : end;
     at[k] = t <= 0 ? 0 : inside;
   }
-  if (n <= kFew && velocity_mu_ms.empty()) return evaluate_few(segment.segment, {at.data(), n}, position_mu.data() + first, count);
   for (std::size_t m = 0; m < segment.segment.motor.size(); ++m) {
     const MotorCubic q = segment.segment.motor[m];
     double* position = position_mu.data() + m * count + first;
@@ -195,7 +211,7 @@ void Timeline::sample_segment(const TimedSegment& segment, std::span<const doubl
     double* velocity = velocity_mu_ms.data() + m * count + first;
     for (std::size_t k = 0; k < n; ++k) {
       const double t = time[k] - segment_ms;
-      velocity[k] = q.velocity(at[k]) * (t < 0 ? 0 : rate + segment.rate_slope * t);
+      velocity[k] = q.velocity(at[k]) * (t < 0 ? 0 : segment.rate_at(t));
     }
   }
 }

@@ -47,6 +47,8 @@ class Timeline {
 
  private:
   void stand_at(double time_ms);
+  static bool are_few(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first);
+  static std::size_t sample_few(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first, std::span<double> position_mu);
   std::size_t segment_until(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first) const;
   std::size_t rest_until(std::span<const double> time_ms, std::size_t first);
   void sample_segment(const TimedSegment& segment, std::span<const double> time_ms, std::size_t first, std::size_t last,

@@ -156,3 +156,11 @@ TEST_CASE("line runs: a part program moves as through all stages, to the last bi
   }
   CHECK(moves > static_cast<std::size_t>(count) * 50);
 }
+
+TEST_CASE("line runs: lines without distance and delays in between", "[property][motion]") {
+  std::string text = "&1\n#1->100X\n#2->200Y\nCoord[1].SegMoveTime=2\nopen prog 1\nlinear abs ta3 td12 ts1 F47\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{}X{:.3f} Y{:.3f}\n", i % 40 == 39 ? "delay 20\n" : "", 0.37 * (i / 2), 0.11 * (i / 3 % 7));
+  const Ran quick = run(text + "close\n", {{0, "&1 b1r"}}, true), plain = run(text + "close\n", {{0, "&1 b1r"}}, false);
+  CHECK(quick.log == plain.log);
+  CHECK((quick.samples == plain.samples));
+}

@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "compiler/compiler.h"
+#include "compiler/frontend/power_pmac/plain_number.h"
 #include "runtime/machine.h"
 #include "tests/reference/unrolled_module.h"
 
@@ -292,4 +293,32 @@ TEST_CASE("plain moves: what there is to say about a row is said at its line", "
   CHECK(has(messages("&1 #1->X #2->Y\nopen prog 1\nlinear abs F5\n" + rows(100) + "X1 Z5\n" + rows(9) + "close\n"), "104:PM6003"));
   CHECK(has(messages("open prog 1\nlinear abs F5\n" + rows(100) + "X1 Y5 I3\n" + rows(9) + "close\n"), "103:PM4003"));
   CHECK(has(messages("open prog 1\ncircle1 abs F5\nX1 R3\n" + [] { std::string t; for (int i = 0; i < 90; ++i) t += "X1 Y2 R5\n"; return t; }() + "X7 Y7\nclose\n"), "94:PM4001"));
+}
+
+TEST_CASE("plain numbers: as strtod reads them, wherever the text ends", "[property][compiler]") {
+  std::mt19937 random(7);
+  const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
+  const auto digits = [&](unsigned count) {
+    std::string text;
+    for (unsigned i = 0; i < count; ++i) text += static_cast<char>('0' + below(10));
+    return text;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const std::string sign = below(3) == 0 ? "-" : below(8) == 0 ? "+" : "";
+    const std::string number = sign + digits(below(10)) + (below(4) == 0 ? "" : "." + digits(below(10)));
+    const std::string behind = std::vector<std::string>{"", " Y2", "\n", "Y7.25 Z3.1234567 A1\n", ".5", "e5", "_", "\xff\x8a\x8a\x8a", ":", "/", "                    "}[below(11)];
+    const std::string text = number + behind;
+    double value = -1;
+    const char* const end = compiler::power_pmac::read_plain_number(text.data(), text.data() + text.size(), value);
+    const bool is_number = number.find_first_of("0123456789") != std::string::npos, goes_on = behind == "e5" || behind == "_" || (behind == ".5" && number.find('.') != std::string::npos);
+    const bool is_longer = behind == ".5" && number.find('.') == std::string::npos;   // and with .5 it is a number whatever was before it
+    INFO("'" << text << "'");
+    if (goes_on || (!is_number && !is_longer)) {
+      REQUIRE(end == nullptr);
+      continue;
+    }
+    const std::string whole = is_longer ? number + ".5" : number;
+    REQUIRE(end == text.data() + whole.size());
+    REQUIRE(value == std::strtod(whole.c_str(), nullptr));
+  }
 }
