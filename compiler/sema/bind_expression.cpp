@@ -233,7 +233,7 @@ void Binder::report_unknown_element(const ir::Element& element, const source::Sp
   const bool reported = !project_.reported_elements.insert(lower(element.pattern)).second;
   if (reported && diagnostics_.has_errors()) return;  // once a compilation; a later command line is refused for itself
   std::vector<std::string_view> candidates;
-  for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) candidates.push_back(bytecode::element_info(static_cast<bytecode::ElementId>(i)).name);
+  for (std::uint16_t i = 0; diagnostics_.dropped_count() == 0 && i < static_cast<std::uint16_t>(bytecode::ElementId::kCount); ++i) candidates.push_back(bytecode::element_info(static_cast<bytecode::ElementId>(i)).name);
   const source::Guess near = source::guess_word(element.pattern, candidates);
   const std::string hint = near.word.empty() ? std::string() : fmt::format("; did you mean {}?", near.word);
   auto& error = diagnostics_.error("PM3053", span, fmt::format("unknown element {}{}", element.pattern, hint));
@@ -260,6 +260,10 @@ void Binder::note_uncomputed_element(const ir::Element& element, const source::S
 
 void Binder::report_unknown(std::string_view name, const source::Span& span, std::string_view what) {
   if (diagnostics_.has_errors() && project_.lexed_names.contains(std::string(name))) return;  // its declaration was refused
+  if (diagnostics_.dropped_count() > 0) {
+    diagnostics_.error("PM3054", span, fmt::format("{} '{}' is not declared", what, name));
+    return;
+  }
   std::vector<std::string_view> candidates;
   std::string_view other_case = project_.names.find_other_case(name);
   const auto same = [&](std::string_view other) { return other != name && lower(other) == lower(name); };

@@ -3,11 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <tuple>
 
 namespace pmac::source {
 namespace {
 
-bool same_edit(const Edit& a, const Edit& b) { return a.span.begin == b.span.begin && a.span.end == b.span.end && a.replacement == b.replacement; }
+struct ByPlace {
+  bool operator()(const Edit& a, const Edit& b) const { return std::tie(a.span.begin, a.span.end, a.replacement) < std::tie(b.span.begin, b.span.end, b.replacement); }
+};
+using EditSet = std::set<Edit, ByPlace>;
+
+bool same_edit(const Edit& a, const Edit& b) { return !ByPlace()(a, b) && !ByPlace()(b, a); }
 
 /// Two insertions at one place have no certain order; an insertion at the edge of a replaced text has.
 bool overlap(const Edit& a, const Edit& b) {
@@ -31,30 +38,39 @@ class Planner {
   }
 
   FixPlan finish() {
-    for (auto& [name, file] : plan_.files)
-      std::sort(file.edits.begin(), file.edits.end(), [](const Edit& a, const Edit& b) { return std::pair(a.span.begin, a.span.end) < std::pair(b.span.begin, b.span.end); });
+    for (auto& [name, taken] : taken_) {
+      std::vector<Edit>& edits = plan_.files[name].edits;
+      while (!taken.empty()) edits.push_back(std::move(taken.extract(taken.begin()).value()));
+    }
     return std::move(plan_);
   }
 
  private:
   bool can_change(const Span& span) const { return span.valid() && span.expansion < 0 && span.begin <= span.end && span.end <= sources_.file(span.file).text.size() && may_change_(sources_.file(span.file).name); }
 
+  /// Those taken do not overlap, so only its neighbours can be in the way: of those that begin before it, a replacement and perhaps
+  /// an insertion at the same place.
   bool fits(const Edit& edit) const {
-    const auto file = plan_.files.find(sources_.file(edit.span.file).name);
-    if (file == plan_.files.end()) return true;
-    return std::none_of(file->second.edits.begin(), file->second.edits.end(), [&](const Edit& other) { return overlap(edit, other) && !same_edit(edit, other); });
+    const auto file = taken_.find(sources_.file(edit.span.file).name);
+    if (file == taken_.end()) return true;
+    const EditSet& taken = file->second;
+    auto other = taken.lower_bound(Edit{edit.span, {}});
+    for (int i = 0; i < 2 && other != taken.begin(); ++i) --other;
+    for (; other != taken.end() && other->span.begin <= edit.span.end; ++other)
+      if (overlap(edit, *other) && !same_edit(edit, *other)) return false;
+    return true;
   }
 
   void add(Edit edit) {
     const File& source = sources_.file(edit.span.file);
-    FixPlan::FileEdits& file = plan_.files.try_emplace(source.name, FixPlan::FileEdits{source.text, {}}).first->second;
-    const bool known = std::any_of(file.edits.begin(), file.edits.end(), [&](const Edit& other) { return same_edit(edit, other); });
-    if (!known) file.edits.push_back(std::move(edit));
+    plan_.files.try_emplace(source.name, FixPlan::FileEdits{source.text, {}});
+    taken_[source.name].insert(std::move(edit));
   }
 
   const SourceManager& sources_;
   const std::function<bool(const std::string&)>& may_change_;
   FixPlan plan_;
+  std::map<std::string, EditSet> taken_;  // by file, in order of place
 };
 
 std::vector<std::string_view> lines_of(std::string_view text) {
@@ -76,16 +92,27 @@ void append_line(std::string& out, char mark, std::string_view line) {
 /// A run of old lines [first, last) that edits touch, and the lines that come instead.
 struct Change { std::size_t first, last; std::string new_text; };
 
-std::size_t line_at(std::string_view text, std::size_t offset) { return static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size())), '\n')); }
+/// Finds the line of an offset, counted from 0.
+class LineFinder {
+ public:
+  explicit LineFinder(std::string_view text) {
+    for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1)) ends_.push_back(at);
+  }
+  std::size_t line_at(std::size_t offset) const { return static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), offset) - ends_.begin()); }
+
+ private:
+  std::vector<std::size_t> ends_;
+};
 
 std::vector<Change> changes_of(const FixPlan::FileEdits& file) {
   const auto lines = lines_of(file.old_text);
+  const LineFinder finder(file.old_text);
   std::vector<Change> changes;
   for (std::size_t i = 0; i < file.edits.size();) {
-    std::size_t first = line_at(file.old_text, file.edits[i].span.begin), last = line_at(file.old_text, file.edits[i].span.end) + 1;
+    std::size_t first = finder.line_at(file.edits[i].span.begin), last = finder.line_at(file.edits[i].span.end) + 1;
     FixPlan::FileEdits part;
     std::size_t next = i;
-    for (; next < file.edits.size() && line_at(file.old_text, file.edits[next].span.begin) < last; ++next) last = std::max(last, line_at(file.old_text, file.edits[next].span.end) + 1);
+    for (; next < file.edits.size() && finder.line_at(file.edits[next].span.begin) < last; ++next) last = std::max(last, finder.line_at(file.edits[next].span.end) + 1);
     last = std::min(last, lines.size());
     const auto begin = first < lines.size() ? static_cast<std::size_t>(lines[first].data() - file.old_text.data()) : file.old_text.size();
     const auto end = last < lines.size() ? static_cast<std::size_t>(lines[last].data() - file.old_text.data()) : file.old_text.size();

@@ -12,6 +12,17 @@ namespace {
 constexpr std::size_t kShownColumns = 120;
 constexpr std::size_t kTab = 4;
 constexpr int kShownLines = 4;  // of a span over several lines
+constexpr std::size_t kNearBytes = 2000;  // around a mark: more than can be shown, however many bytes a character has
+
+/// The part of a line that is near its marked bytes [begin, end); the rest of a very long line is not looked at.
+struct Near { std::string_view text; std::size_t begin, end; bool cut_before, cut_behind; };
+
+Near near_mark(std::string_view line, std::size_t begin, std::size_t end) {
+  std::size_t first = begin > 2 * kNearBytes ? begin - kNearBytes : 0;
+  while (first > 0 && first < begin && (static_cast<unsigned char>(line[first]) & 0xc0) == 0x80) ++first;  // inside a character
+  const std::size_t last = std::min(line.size(), begin + 2 * kNearBytes);
+  return {line.substr(first, last - first), begin - first, std::max(std::min(end, last), first) - first, first > 0, last < line.size()};
+}
 
 /// A line as it is shown: cells of one terminal column each, and where its marked bytes lie.
 struct Shown {
@@ -48,7 +59,7 @@ Shown show(std::string_view line, std::size_t begin, std::size_t end) {
 }
 
 /// Cuts a long line so that the mark stays in sight.
-std::pair<std::string, std::string> cut(const Shown& shown, char head) {
+std::pair<std::string, std::string> cut(const Shown& shown, const Near& near, char head) {
   const std::size_t size = std::max(shown.cells.size(), shown.mark_begin + 1);
   std::size_t first = 0, last = size;
   if (size > kShownColumns) {
@@ -56,10 +67,10 @@ std::pair<std::string, std::string> cut(const Shown& shown, char head) {
     first = shown.mark_begin > 2 * context ? shown.mark_begin - context : 0;
     last = std::min(size, first + kShownColumns);
   }
-  std::string text = first ? "..." : "";
+  std::string text = first || near.cut_before ? "..." : "";
   std::string mark(text.size(), ' ');
   for (std::size_t i = first; i < std::min(last, shown.cells.size()); ++i) text += shown.cells[i];
-  if (last < size) text += "...";
+  if (last < size || near.cut_behind) text += "...";
   mark.append(shown.mark_begin - first, ' ');
   mark += head;
   const std::size_t mark_end = std::min(shown.mark_end, last);
@@ -85,7 +96,8 @@ std::string snippet(const SourceManager& sources, const Span& span, const std::f
     const std::size_t indent = line == begin.line ? 0 : std::min(whole.find_first_not_of(" \t"), whole.size());
     const std::size_t from = line == begin.line ? static_cast<std::size_t>(begin.column - 1) : indent;
     const std::size_t to = line == end.line ? static_cast<std::size_t>(end.column - 1) : whole.size();
-    const auto [shown, mark] = cut(show(whole, from, to), line == begin.line ? '^' : '~');
+    const Near near = near_mark(whole, std::min(from, whole.size()), to);
+    const auto [shown, mark] = cut(show(near.text, near.begin, near.end), near, line == begin.line ? '^' : '~');
     const std::size_t blanks = mark.find_first_not_of(' ');
     text += fmt::format("    {}\n    {}{}\n", shown, mark.substr(0, blanks), paint(mark.substr(blanks)));
   }

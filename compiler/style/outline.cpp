@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "compiler/source/closing_marks.h"
 #include "compiler/style/source_text.h"
 
 namespace pmac::style {
@@ -16,7 +17,7 @@ bool begins_conditional(std::string_view name) { return name == "if" || name == 
 
 class OutlineReader {
  public:
-  explicit OutlineReader(std::string_view text) : text_(text) { outline_.code = std::string(text); }
+  explicit OutlineReader(std::string_view text) : text_(text), marks_(text) { outline_.code = std::string(text); }
 
   Outline run() {
     if (text_.starts_with("\xef\xbb\xbf")) blank_out(0, 3), at_ = 3;
@@ -60,7 +61,7 @@ class OutlineReader {
 
   void take_code() {
     line_has_code_ = true;
-    at_ = text_[at_] == '"' ? end_of_string(text_, at_) : at_ + 1;
+    at_ = text_[at_] == '"' ? marks_.end_of(at_) : at_ + 1;
   }
 
   /// End of the line that holds an offset, without its line end.
@@ -96,7 +97,7 @@ class OutlineReader {
   }
 
   /// Behind the last continued line, or where a comment of several lines begins.
-  std::size_t end_of_directive() const {
+  std::size_t end_of_directive() {
     std::size_t at = at_;
     while (at < text_.size()) {
       const std::string_view rest = text_.substr(at, 3);
@@ -104,7 +105,7 @@ class OutlineReader {
       else if (rest == "\\\r\n") at += 3;
       else if (rest.starts_with("\n") || rest.starts_with("\r\n")) return at;
       else if (rest.starts_with("//")) return end_of_line(at);
-      else if (rest.starts_with("\"")) at = end_of_string(text_, at);
+      else if (rest.starts_with("\"")) at = marks_.end_of(at);
       else if (rest.starts_with("/*")) {
         const std::size_t end = end_of_block_comment(at);
         if (text_.substr(at, end - at).find('\n') != std::string_view::npos) return at;
@@ -141,7 +142,7 @@ class OutlineReader {
       if (rest.starts_with("\n") || rest == "\r\n") break;
       if (rest == "//") { end = end_of_line(end); break; }
       if (rest == "/*") end = end_of_block_comment(end);
-      else end = text_[end] == '"' ? end_of_string(text_, end) : end + 1;
+      else end = text_[end] == '"' ? marks_.end_of(end) : end + 1;
     }
     add(PieceKind::kSkipped, end);
     blank_out(at_, end);
@@ -150,6 +151,7 @@ class OutlineReader {
   }
 
   std::string_view text_;
+  source::ClosingMarks marks_;
   Outline outline_;
   std::size_t at_ = 0;
   bool line_has_code_ = false;  // something but blanks and comments since the last line end
@@ -168,23 +170,16 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-std::size_t end_of_string(std::string_view text, std::size_t at) {
-  for (std::size_t i = at + 1; i < text.size() && text[i] != '\n'; ++i) {
-    if (text[i] == '\\') ++i;
-    else if (text[i] == '"') return i + 1;
-  }
-  return at + 1;
-}
-
 Outline read_outline(std::string_view text) { return OutlineReader(text).run(); }
 
 std::vector<std::string> included_files(std::string_view text) {
   std::vector<std::string> files;
   for (std::size_t at = text.find("#include"); at != std::string_view::npos; at = text.find("#include", at + 1)) {
     const std::size_t line_end = std::min(text.find('\n', at), text.size());
-    const std::size_t open = text.find_first_of("\"<", at);
-    const std::size_t close = open < line_end ? text.find_first_of("\">", open + 1) : std::string_view::npos;
-    if (close < line_end) files.emplace_back(text.substr(open + 1, close - open - 1));
+    const std::string_view line = text.substr(at, line_end - at);
+    const std::size_t open = line.find_first_of("\"<");
+    const std::size_t close = open == std::string_view::npos ? open : line.find_first_of("\">", open + 1);
+    if (close != std::string_view::npos) files.emplace_back(line.substr(open + 1, close - open - 1));
   }
   return files;
 }

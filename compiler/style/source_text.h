@@ -54,9 +54,6 @@ struct Outline {
 };
 Outline read_outline(std::string_view text);
 
-/// End of the string that begins at an offset; a quotation mark that is not closed on its line stands alone.
-std::size_t end_of_string(std::string_view text, std::size_t at);
-
 bool is_blank(char c);
 bool is_name_part(char c);
 std::string lower_case(std::string_view text);

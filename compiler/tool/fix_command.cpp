@@ -102,6 +102,7 @@ int fix(const Arguments& arguments, const compiler::Options& options) {
   }
   if (arguments.format == "text" && !arguments.fix_dry_run && repairs) std::cerr << fmt::format("{} repair(s) made\n", repairs);
   std::cout << std::flush;
+  if (!std::cout) throw UsageError("cannot write the output");
   if (!arguments.fix_dry_run || errors_left == 0) return kOk;
   std::cerr << fmt::format("{} error(s) would be left; pmacc --check shows them\n", errors_left);
   return kUserError;

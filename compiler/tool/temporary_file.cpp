@@ -44,9 +44,10 @@ TemporaryFile::TemporaryFile(const std::string& target) : target_(target), name_
 }
 
 TemporaryFile::~TemporaryFile() {
-  if (!g_exists.exchange(false)) return;
+  if (!g_exists) return;
   std::error_code ignored;
   std::filesystem::remove(name_, ignored);
+  g_exists = false;  // only now: a signal in between must still find it
 }
 
 void TemporaryFile::write(std::string_view bytes) {

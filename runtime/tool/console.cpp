@@ -1,5 +1,6 @@
 #include "runtime/tool/console.h"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -10,11 +11,14 @@
 #include <cstdlib>
 #include <regex>
 
+#include "compiler/source/closing_marks.h"
+
 namespace pmac::tool {
 namespace {
 
 constexpr char kAck = 0x06, kEndOfInput = 0x04;
 constexpr std::size_t kLongestLine = 1 << 20;
+constexpr std::size_t kLongestBuffer = 64u << 20;  // bytes from open to close
 constexpr std::size_t kLongestOwnLine = 200;  // of wait and its kind
 constexpr int kPaceMs = 10;
 
@@ -46,8 +50,13 @@ class LineReader {
  private:
   /// The next line of what was read; the last one needs no line end, Ctrl-D ends the input.
   bool take(std::string& line) {
-    const std::size_t end = text_.find_first_of("\n\x04");
-    if (end == std::string::npos && (!ended_ || text_.empty())) return false;
+    const std::size_t end = text_.find_first_of("\n\x04", searched_);
+    if (end == std::string::npos && (!ended_ || text_.empty())) {
+      text_.resize(std::min(text_.size(), kLongestLine + 1));  // more of a line that will be refused is not kept
+      searched_ = text_.size();
+      return false;
+    }
+    searched_ = 0;
     line = text_.substr(0, end);
     if (end != std::string::npos && text_[end] == kEndOfInput) {
       ended_ = true;
@@ -61,6 +70,7 @@ class LineReader {
   }
 
   std::string text_;
+  std::size_t searched_ = 0;  // no line ends before this place
   bool ended_ = false;
 };
 
@@ -69,18 +79,30 @@ struct BufferWords { bool opens = false, closes = false; };
 
 bool is_word_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
 
-/// Behind the text, comment or single character that stands at `at`.
-std::size_t behind_noise(std::string_view line, std::size_t at) {
-  const std::string_view rest = line.substr(at);
-  if (rest.starts_with("//")) return line.size();
-  if (rest.starts_with("/*")) return rest.find("*/", 2) == std::string_view::npos ? at + 1 : at + rest.find("*/", 2) + 2;
-  if (rest.front() != '"') return at + 1;
-  for (std::size_t i = at + 1; i < line.size(); ++i) {
-    if (line[i] == '"') return i + 1;
-    if (line[i] == '\\') ++i;
+/// Texts and comments of a line, asked for from its beginning to its end.
+class Noise {
+ public:
+  explicit Noise(std::string_view line) : line_(line), marks_(line) {}
+
+  /// Behind the text, comment or single character that stands at `at`.
+  std::size_t behind(std::size_t at) {
+    const std::string_view rest = line_.substr(at);
+    if (rest.starts_with("//")) return line_.size();
+    if (rest.starts_with("/*") && comments_close_) return behind_comment(at);
+    return rest.front() == '"' ? marks_.end_of(at) : at + 1;
   }
-  return at + 1;   // a text that does not end
-}
+
+ private:
+  std::size_t behind_comment(std::size_t at) {
+    const std::size_t end = line_.find("*/", at + 2);
+    comments_close_ = end != std::string_view::npos;  // otherwise no later one does
+    return comments_close_ ? end + 2 : at + 1;
+  }
+
+  std::string_view line_;
+  source::ClosingMarks marks_;
+  bool comments_close_ = true;
+};
 
 bool is_word(std::string_view word, std::string_view wanted) {
   return std::equal(word.begin(), word.end(), wanted.begin(), wanted.end(), [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
@@ -88,9 +110,10 @@ bool is_word(std::string_view word, std::string_view wanted) {
 
 BufferWords buffer_words(std::string_view line) {
   BufferWords words;
+  Noise noise(line);
   for (std::size_t at = 0; at < line.size();) {
     if (!is_word_part(line[at])) {
-      at = behind_noise(line, at);
+      at = noise.behind(at);
       continue;
     }
     const std::size_t begin = at;
@@ -160,6 +183,21 @@ bool Console::wait_before_acknowledging(runtime::Machine& machine) {
   return false;
 }
 
+/// A line of the open buffer; where the buffer grows too long, all of it is dropped up to its close.
+void Console::keep_line(const std::string& line) {
+  if (buffer_dropped_) return;
+  buffer_dropped_ = buffer_.size() + line.size() >= kLongestBuffer;
+  if (buffer_dropped_) {
+    error_place_ = {};
+    buffer_.clear();
+    typed_.erase(typed_.lower_bound(buffer_line_), typed_.end());
+    refuse(fmt::format("error #21: ILLEGAL PARAMETER: the buffer is longer than {} MiB and is dropped", kLongestBuffer >> 20));
+    return;
+  }
+  typed_[line_] = line;
+  buffer_ += line + "\n";
+}
+
 void Console::take_line(runtime::Machine& machine, const std::string& line) {
   ++line_;
   waits_ = false;
@@ -172,11 +210,11 @@ void Console::take_line(runtime::Machine& machine, const std::string& line) {
     refuse("error #21: ILLEGAL PARAMETER: the line is too long");
   } else if (in_buffer || (words.opens && !words.closes)) {
     if (!in_buffer) buffer_line_ = line_;
-    typed_[line_] = line;
-    buffer_ += line + "\n";
+    keep_line(line);
     if (!words.closes) return;
-    execute(machine, buffer_, buffer_line_);
+    if (!buffer_dropped_) execute(machine, buffer_, buffer_line_);
     buffer_.clear();
+    buffer_dropped_ = false;
     buffer_line_ = 0;
   } else if (!wait(line)) {
     execute(machine, line, line_);
@@ -217,7 +255,7 @@ runtime::RunOutcome Console::run(runtime::Machine& machine, const runtime::RunLi
     if (std::fflush(stdout) != 0) break;  // nobody listens any more
     if (going && advances && !waited) going = advance(machine);
   }
-  if (buffer_line_ > 0) execute(machine, buffer_, buffer_line_);  // says that it is not closed
+  if (buffer_line_ > 0 && !buffer_dropped_) execute(machine, buffer_, buffer_line_);  // says that it is not closed
   std::fflush(stdout);
   return outcome_;
 }

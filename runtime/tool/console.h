@@ -32,6 +32,7 @@ class Console {
   static constexpr const char* kName = "stdin";  // of the console in messages
 
  private:
+  void keep_line(const std::string& line);
   void take_line(runtime::Machine& machine, const std::string& line);
   void execute(runtime::Machine& machine, const std::string& text, int first_line);
   bool wait(const std::string& line);
@@ -46,6 +47,7 @@ class Console {
   ErrorPlace error_place_;
   std::string buffer_;                 // lines since open, while a buffer is open
   int buffer_line_ = 0;                // of its open
+  bool buffer_dropped_ = false;        // it was too long
   std::map<int, std::string> typed_;   // lines of buffers
   double wait_ms_ = 0;                 // what the last line lets pass
   bool wait_idle_ = false;

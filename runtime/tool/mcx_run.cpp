@@ -49,12 +49,16 @@ class Pulses : public PulseSink {
   }
 };
 
-/// In order of their place.
+constexpr std::size_t kMostProblems = 100;  // that are shown
+
+/// In order of their place; of very many the first ones, and how many there are.
 void print_problems(const std::string& name, const std::string& text, std::vector<Problem> problems) {
   source::SourceManager sources;
   const std::int32_t file = sources.add_file(name, text);
   std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
   const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  const std::size_t hidden = problems.size() - std::min(problems.size(), kMostProblems);
+  problems.resize(problems.size() - hidden);
   for (const Problem& problem : problems) {
     const auto line_start = static_cast<std::uint32_t>(sources.line_text(file, problem.line).data() - sources.file(file).text.data());
     const std::uint32_t begin = line_start + static_cast<std::uint32_t>(problem.column - 1);
@@ -64,6 +68,7 @@ void print_problems(const std::string& name, const std::string& text, std::vecto
     diagnostic.message = problem.text;
     std::fputs(source::format_text(sources, diagnostic, color).c_str(), stderr);
   }
+  if (hidden > 0) std::fprintf(stderr, "%zu more problem(s) are not shown\n", hidden);
 }
 
 /// Executes the script on a chip; a continuous drive that nobody stops ends at the time limit.

@@ -171,6 +171,76 @@ TEST_CASE("whole outputs: a compiler that is ended by a signal leaves neither it
   CHECK_FALSE(leaves_other_files(w));
 }
 
+TEST_CASE("whole outputs: a reader that goes away is an error of pmacc", "[tools]") {
+  const Workspace w;
+  const std::string source = large_program() + std::string(200'000, '\n') + "P1  =1\n";   // more than a pipe holds
+  w.write("large.pmc", source);
+  for (const char* command : {"pmacc large.pmc --emit=tokens", "pmacc large.pmc --emit=tree", "pmacc large.pmc --emit=ir", "pmacc large.pmc --emit=bytecode", "pmacc -E large.pmc",
+                              "pmacc fmt --stdout large.pmc", "pmacc fmt - < large.pmc", "pmacc --explain all"}) {
+    INFO(command);
+    const ToolResult r = w.shell("set -o pipefail; " + std::string(command) + " | true");
+    CHECK(r.code == 2);
+    CHECK(contains(r.err, "cannot write"));
+  }
+  CHECK(w.shell("set -o pipefail; pmacc large.pmc nosuch.pmc 2>&1 | true").code == 2);   // of messages: the exit code stays
+  CHECK(w.read("large.pmc") == source);
+}
+
+namespace {
+
+/// Sends a signal as soon as the command has made a temporary file. Where the command is faster, it is over and its code is 0.
+ToolResult ended_while_writing(const Workspace& w, const std::string& command, const std::string& signal) {
+  return w.shell("shopt -s nullglob; rm -f *.tmp; " + command + " & run=$!\n"
+                 "while kill -0 $run 2>/dev/null; do made=(*.tmp); [ ${#made[@]} = 0 ] || { kill -" + signal + " $run; break; }; done\n"
+                 "wait $run");
+}
+
+}  // namespace
+
+TEST_CASE("whole outputs: pmacc and its formatter, ended while they write, leave the old file or the new one and nothing else", "[tools]") {
+  const Workspace w;
+  const std::string source = "P1  =1\n// " + std::string(60'000'000, 'a') + "\n";   // takes long to write, and not to format
+  int ended = 0;
+  for (const char* signal : {"TERM", "INT", "HUP"}) {
+    INFO(signal);
+    w.write("long.pmc", source);
+    const ToolResult r = ended_while_writing(w, "pmacc fmt long.pmc", signal);
+    ended += r.code > 128;
+    CHECK((r.code == 0 || r.code > 128));
+    CHECK((w.read("long.pmc") == source) == (r.code != 0));
+    CHECK_FALSE(leaves_other_files(w));
+  }
+  std::string moves = "open prog 1\nlinear abs F10\n";
+  for (int i = 0; i < 400'000; ++i) moves += "X1 Y2\n";
+  w.write("moves.pmc", moves + "close\n");
+  w.write("o.pmx", "older");
+  const ToolResult r = ended_while_writing(w, "pmacc moves.pmc -o o.pmx", "TERM");
+  ended += r.code > 128;
+  CHECK((w.read("o.pmx") == "older") == (r.code != 0));
+  CHECK_FALSE(leaves_other_files(w));
+  CHECK(ended > 0);   // at least one of the four was caught
+}
+
+TEST_CASE("whole outputs: the formatter, ended between two files, has written the first one whole", "[tools]") {
+  const Workspace w;
+  w.write("first.pmc", "P1  =1\n");
+  const ToolResult r = w.shell("mkfifo second.pmc; pmacc fmt first.pmc second.pmc & run=$!\n"
+                               "for i in $(seq 100); do [ \"$(cat first.pmc)\" = 'P1 = 1' ] && break; sleep 0.1; done; kill -TERM $run; wait $run");
+  CHECK(r.code == 143);
+  CHECK(w.read("first.pmc") == "P1 = 1\n");
+  CHECK_FALSE(leaves_other_files(w));
+}
+
+TEST_CASE("whole outputs: a limit of the size of files that is a signal leaves nothing of pmacc's", "[tools]") {
+  const Workspace w;
+  w.write("large.pmc", large_program());
+  const ToolResult r = w.shell("ulimit -f 16; pmacc large.pmc -o o.pmx");
+  CHECK(r.code == 2);
+  CHECK(contains(r.err, "cannot write o.pmx: File too large"));
+  CHECK_FALSE(w.has("o.pmx"));
+  CHECK_FALSE(leaves_other_files(w));
+}
+
 TEST_CASE("whole outputs: an input of more than a gibibyte is refused", "[tools]") {
   const Workspace w;
   REQUIRE(w.shell("truncate -s 3G long.pmc").code == 0);   // takes no room on the disk

@@ -76,8 +76,9 @@ const Macro* MacroTable::called_by(std::string_view name) const {
 
 bool MacroTable::needs_next_line(const Tokens& line) const {
   for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i].kind != Kind::kIdentifier) continue;
     const std::size_t open = skip_blanks(line, i + 1);
-    const bool calls = line[i].kind == Kind::kIdentifier && open < line.size() && line[open].text == "(" && called_by(line[i].text);
+    const bool calls = open < line.size() && line[open].text == "(" && called_by(line[i].text);
     if (!calls) continue;
     int depth = 0;
     std::size_t at = open;

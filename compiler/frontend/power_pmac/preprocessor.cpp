@@ -22,14 +22,6 @@ bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) |
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-std::size_t end_of_string(std::string_view text, std::size_t at) {
-  for (std::size_t i = at + 1; i < text.size() && text[i] != '\n'; ++i) {
-    if (text[i] == '\\') ++i;
-    else if (text[i] == '"') return i + 1;
-  }
-  return at + 1;  // not closed: a lone quotation mark
-}
-
 Kind kind_at(char c) {
   if (is_name_start(c)) return Kind::kIdentifier;
   if (is_digit(c)) return Kind::kNumber;
@@ -39,14 +31,14 @@ Kind kind_at(char c) {
 }
 
 /// A number takes no letters: 1X stays two tokens, as the controller's loader reads b1r. $ takes hex digits.
-std::size_t end_of_token(std::string_view text, std::size_t at) {
+std::size_t end_of_token(std::string_view text, std::size_t at, source::ClosingMarks& marks) {
   std::size_t end = at + 1;
   const auto run = [&](auto accepts) { while (end < text.size() && accepts(text[end])) ++end; };
   switch (kind_at(text[at])) {
     case Kind::kIdentifier: run(is_name_part); break;
     case Kind::kNumber: run(is_digit); break;
     case Kind::kBlank: run(is_blank); break;
-    case Kind::kString: return end_of_string(text, at);
+    case Kind::kString: return marks.end_of(at);
     default:
       if (text[at] == '$') run([](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; });
       break;
@@ -135,8 +127,9 @@ source::Span ExpandedText::span_of(std::size_t begin, std::size_t end) const {
 
 PreprocessorTokens split_tokens(std::string_view text, const source::Span& span) {
   PreprocessorTokens tokens;
+  source::ClosingMarks marks(text);
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = end_of_token(text, at);
+    const std::size_t end = end_of_token(text, at, marks);
     source::Span place = span;
     place.begin = static_cast<std::uint32_t>(span.begin + at);
     place.end = static_cast<std::uint32_t>(span.begin + end);
@@ -172,6 +165,7 @@ void Preprocessor::run_file(std::int32_t file) {
   const std::string& text = sources_.file(file).text;
   std::size_t cursor = text.starts_with("\xef\xbb\xbf") ? 3 : 0;
   const bool turbo_before = std::exchange(turbo_file_, is_turbo_text(text));
+  const source::ClosingMarks marks_before = std::exchange(marks_, source::ClosingMarks(text));
   record(SourceLine::Kind::kFileBegins, {}, file);
   while (cursor < text.size()) {
     const std::size_t line_begin = cursor;
@@ -190,6 +184,7 @@ void Preprocessor::run_file(std::int32_t file) {
     conditionals_.pop_back();
   }
   turbo_file_ = turbo_before;
+  marks_ = marks_before;
 }
 
 /// Moves stand in prog and subprog buffers; elsewhere the grammar says what is wrong with them.
@@ -276,7 +271,7 @@ Preprocessor::Tokens Preprocessor::next_line(std::int32_t file, std::size_t& cur
       return line;
     }
     if (c == '"') {
-      cursor = end_of_string(text, cursor);
+      cursor = marks_.end_of(cursor);
     } else if (c == '/' && next == '/') {
       add(start, cursor);
       cursor = std::min(text.find('\n', cursor), text.size());

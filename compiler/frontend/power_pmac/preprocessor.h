@@ -13,6 +13,7 @@
 #include "compiler/frontend/power_pmac/macros.h"
 #include "compiler/frontend/power_pmac/source_line.h"
 #include "compiler/ir/ir.h"
+#include "compiler/source/closing_marks.h"
 #include "compiler/source/source.h"
 
 namespace pmac::compiler::power_pmac {
@@ -109,6 +110,7 @@ class Preprocessor {
   bool in_program_ = false;        // inside open prog or open subprog ... close, by what begins the lines
   std::size_t plain_tried_ = 0;    // plain lines up to here are too few
   ExpandedText* out_ = nullptr;
+  source::ClosingMarks marks_{{}};  // of the file at hand
   bool turbo_file_ = false;   // the file at hand has the comments of Turbo PMAC
   int include_depth_ = 0;
   int max_include_depth_ = 64;

@@ -206,8 +206,10 @@ class Recovery : public antlr4::DefaultErrorStrategy {
     reported_index_ = static_cast<std::ptrdiff_t>(token.getTokenIndex());
     const std::string_view word = tree_.text_of(token);
     std::vector<std::string_view> candidates = keyword_names();
-    for (const std::string& name : names_.global) candidates.push_back(name);
-    for (const std::string& name : names_.local) candidates.push_back(name);
+    if (diagnostics_.dropped_count() == 0) {  // otherwise only its number counts
+      candidates.insert(candidates.end(), names_.global.begin(), names_.global.end());
+      candidates.insert(candidates.end(), names_.local.begin(), names_.local.end());
+    }
     const std::size_t letters = static_cast<std::size_t>(std::find_if(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; }) - word.begin());
     if (letters == 1 && word.size() > 1 && (word[0] == 'O' || word[0] == 'o')) {
       diagnostics_.error("PM2050", tree_.span_of(token), fmt::format("'{}' is the number of a part program; here it stands in open prog {}, so take this line out", word, word.substr(1)));

@@ -7,14 +7,6 @@
 namespace pmac::compiler::power_pmac {
 namespace {
 
-/// The parser generator reads UTF-8; one byte must stay one position, so other bytes than ASCII become question marks. Texts and
-/// comments keep theirs: they are taken from the expanded text.
-std::string as_ascii(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) >= 0x80) c = '?';
-  return text;
-}
-
 class AmbiguityListener : public antlr4::BaseErrorListener {
  public:
   explicit AmbiguityListener(std::vector<std::string>& found) : found_(found) {}
@@ -70,7 +62,7 @@ std::string_view SyntaxTree::text_of(const antlr4::Token& token) const {
 std::unique_ptr<SyntaxTree> lex(ExpandedText expanded, DeclaredNames& names, source::Diagnostics* diagnostics) {
   auto tree = std::make_unique<SyntaxTree>();
   tree->expanded = std::move(expanded);
-  tree->input = std::make_unique<antlr4::ANTLRInputStream>(as_ascii(tree->expanded.text()));
+  tree->input = std::make_unique<antlr4::ANTLRInputStream>(lexer_input(tree->expanded.text()));
   tree->lexer = std::make_unique<WordLexer>(tree->input.get(), tree->expanded.text(), names);
   const TokenText text{[&](const antlr4::Token& token) { return tree->text_of(token); }, [&](const antlr4::Token& token) { return tree->span_of(token); }};
   tree->repaired = repair_turbo(*tree->lexer, text, names, diagnostics);

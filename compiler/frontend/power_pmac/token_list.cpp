@@ -13,6 +13,20 @@ TokenList::TokenList(antlr4::TokenSource& source, const TokenText& text, source:
     last = tokens_.back()->getType() == antlr4::Token::EOF;
   }
   dropped_.resize(tokens_.size());
+  pair_parentheses();
+}
+
+void TokenList::pair_parentheses() {
+  closing_.assign(tokens_.size(), kNone);
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < tokens_.size(); ++i) {
+    const std::size_t type = tokens_[i]->getType();
+    if (type == T::LEFT_BRACE || type == T::RIGHT_BRACE || type == T::OPEN || type == T::CLOSE) open.clear();
+    if (type == T::LEFT) open.push_back(i);
+    if (type != T::RIGHT || open.empty()) continue;
+    closing_[open.back()] = i;
+    open.pop_back();
+  }
 }
 
 std::string TokenList::exact_text(std::size_t i) const { return i < tokens_.size() ? std::string(text_.text(*tokens_[i])) : std::string(); }
@@ -26,17 +40,6 @@ std::string TokenList::text(std::size_t i) const {
 std::size_t TokenList::last_of_line(std::size_t i) const {
   while (i + 2 < tokens_.size() && line(i + 1) == line(i)) ++i;
   return i;
-}
-
-std::size_t TokenList::closing_parenthesis(std::size_t i) const {
-  int depth = 0;
-  for (; i < tokens_.size(); ++i) {
-    const std::size_t type = tokens_[i]->getType();
-    if (type == T::LEFT_BRACE || type == T::RIGHT_BRACE || type == T::OPEN || type == T::CLOSE) return kNone;
-    depth += type == T::LEFT ? 1 : type == T::RIGHT ? -1 : 0;
-    if (depth == 0) return i;
-  }
-  return kNone;
 }
 
 void TokenList::retype(std::size_t i, std::size_t type) { static_cast<antlr4::CommonToken*>(tokens_[i].get())->setType(type); }

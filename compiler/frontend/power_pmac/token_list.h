@@ -26,8 +26,8 @@ class TokenList {
   source::Span span(std::size_t i) const { return text_.span(*tokens_[std::min(i, tokens_.size() - 1)]); }
   bool starts_line(std::size_t i) const { return i == 0 || line(i) != line(i - 1); }
   std::size_t last_of_line(std::size_t i) const;
-  /// The parenthesis that closes the one at i, or nothing where the buffer ends before.
-  std::size_t closing_parenthesis(std::size_t i) const;
+  /// The parenthesis that closes the one at i, or kNone where a block or the buffer ends before. As the text was before any change.
+  std::size_t closing_parenthesis(std::size_t i) const { return closing_[i]; }
 
   void retype(std::size_t i, std::size_t type);
   void drop(std::size_t first, std::size_t last);
@@ -46,11 +46,13 @@ class TokenList {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
  private:
+  void pair_parentheses();
   std::unique_ptr<antlr4::Token> made_from(std::size_t i, std::size_t type) const;
 
   const TokenText& text_;
   source::Diagnostics* diagnostics_;
   Tokens tokens_;
+  std::vector<std::size_t> closing_;  // by token
   std::vector<bool> dropped_;
   std::map<std::size_t, std::vector<std::size_t>> before_, behind_;
   std::map<std::size_t, std::size_t> split_;

@@ -232,7 +232,7 @@ class TokenPass {
     }
     return is_assignment(type(next));
   }
-  static bool ends_not(std::size_t type) { return type != T::SEMICOLON && type != T::CLOSE && type != T::OPEN && type != antlr4::Token::EOF; }
+  static bool ends_not(std::size_t type) { return type != T::SEMICOLON && type != T::LEFT_BRACE && type != T::RIGHT_BRACE && type != T::CLOSE && type != T::OPEN && type != antlr4::Token::EOF; }
 
   /// Numbers of the operators that have no name in the grammar.
   static std::size_t literal(std::string_view text) {

@@ -9,6 +9,8 @@ namespace {
 
 using T = grammar::PowerPmacParser;
 
+constexpr std::size_t kMostOpen = 1000;  // more will be refused as nested too deep
+
 source::Span end_of(source::Span span) {
   span.begin = span.end;
   return span;
@@ -89,12 +91,12 @@ void TurboBlocks::take_header(std::size_t i) {
     return;
   }
   const std::size_t next = tokens_.type(last + 1);
-  if (has_ends_ && next != T::LEFT_BRACE && next != T::SEMICOLON) open_.push_back({is_loop, i, last, {}});
+  if (has_ends_ && open_.size() < kMostOpen && next != T::LEFT_BRACE && next != T::SEMICOLON) open_.push_back({is_loop, i, last, {}});
 }
 
 /// Inside of one pair of parentheses: = compares, AND and OR join. Returns the closing one.
 std::size_t TurboBlocks::take_condition(std::size_t left, std::size_t right) {
-  for (std::size_t i = left + 1; i < right; ++i) {
+  for (std::size_t i = std::max(left + 1, conditions_end_); i < right; ++i) {
     if (tokens_.type(i) == T::ASSIGN) {
       auto* error = tokens_.error("PM2011", tokens_.span(i), "a condition compares with ==; a single = assigns");
       if (error) error->fix = source::FixIt{tokens_.span(i), "=="};
@@ -104,6 +106,7 @@ std::size_t TurboBlocks::take_condition(std::size_t left, std::size_t right) {
       take_logic_word(i, &error);
     }
   }
+  conditions_end_ = std::max(conditions_end_, right);
   return right;
 }
 

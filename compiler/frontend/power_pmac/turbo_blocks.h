@@ -36,6 +36,7 @@ class TurboBlocks {
   TokenList& tokens_;
   const DeclaredNames& names_;
   std::vector<Header> open_;
+  std::size_t conditions_end_ = 0;  // conditions up to this token have been read
   bool has_ends_ = false;  // the buffer has ENDIF or ENDWHILE, so its conditions may be theirs
 };
 

@@ -120,7 +120,7 @@ class TurboPass {
   /// OPEN PLC 5 CLEAR, also with CLEAR on the next line.
   void take_open(std::size_t i) {
     std::size_t at = i + 1;
-    while (at + 1 < tokens_.size() && tokens_.line(at) == tokens_.line(i) && tokens_.text(at) != "clear") ++at;
+    while (at + 1 < tokens_.size() && tokens_.line(at) == tokens_.line(i) && tokens_.type(at) != T::OPEN && tokens_.text(at) != "clear") ++at;
     if (tokens_.text(at) != "clear" || (tokens_.type(at) != T::NAME && tokens_.type(at) != T::CLEAR)) return;
     auto* error = tokens_.error("PM2026", tokens_.span(at), "open empties the buffer by itself; there is no clear in it");
     if (error) error->fix = source::FixIt{tokens_.span(at), ""};

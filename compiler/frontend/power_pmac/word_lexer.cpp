@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/bytecode/bytecode.h"
+#include "compiler/source/closing_marks.h"
 
 namespace pmac::compiler::power_pmac {
 namespace {
@@ -91,6 +92,19 @@ std::size_t run_length(std::string_view word) {
 
 }  // namespace
 
+std::string lexer_input(std::string_view text) {
+  constexpr char kNoWord = '\x02';
+  std::string input(text);
+  source::ClosingMarks marks(text, source::ClosingMarks::LineEnd::kEndsText);
+  for (std::size_t at = 0; at < input.size();) {
+    const std::size_t end = input[at] == '"' ? marks.end_of(at) : at + 1;
+    if (input[at] == '"' && end == at + 1) input[at] = kNoWord;
+    for (; at < end; ++at)
+      if (static_cast<unsigned char>(input[at]) >= 0x80) input[at] = '?';
+  }
+  return input;
+}
+
 WordLexer::WordLexer(antlr4::ANTLRInputStream* input, std::string_view text, DeclaredNames& names)
     : PowerPmacLexer(input), text_(text), names_(names) {
   removeErrorListeners();
@@ -130,10 +144,10 @@ bool WordLexer::begins_range(const antlr4::Token& number) const {
 }
 
 /// The token keeps `length` characters; what is behind them is read again.
-void WordLexer::cut(antlr4::Token& token, std::size_t length) {
-  static_cast<antlr4::CommonToken&>(token).setStopIndex(token.getStartIndex() + length - 1);
-  setCharPositionInLine(token.getCharPositionInLine() + length);
-  _input->seek(token.getStartIndex() + length);
+void WordLexer::cut(antlr4::Token& word, std::size_t length) {
+  static_cast<antlr4::CommonToken&>(word).setStopIndex(word.getStartIndex() + length - 1);
+  setCharPositionInLine(word.getCharPositionInLine() + length);
+  _input->seek(word.getStartIndex() + length);
   hitEOF = false;  // the token may have reached the end of the text
 }
 

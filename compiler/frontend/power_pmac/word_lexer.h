@@ -30,6 +30,11 @@ struct DeclaredNames {
 /// Longest word; a longer one is not cut into its parts, which costs time with the square of its length, and is refused.
 inline constexpr std::size_t kMaxWord = 1000;
 
+/// A text as the parser generator's input. It reads UTF-8; one byte must stay one position, so other bytes than ASCII become question
+/// marks. A quotation mark that is not closed becomes a character that no token begins with, as the mark itself would be none: the
+/// generated lexer would look for the end of every one of them. Texts and comments keep theirs: they are taken from the text itself.
+std::string lexer_input(std::string_view text);
+
 class WordLexer : public grammar::PowerPmacLexer {
  public:
   /// text: what input holds. names: extended by the declarations that the lexer meets.

@@ -12,13 +12,6 @@ using T = grammar::PowerPmacParser;
 
 constexpr std::string_view kOpensBuffer = "open prog 0\n";  // put before a text that stands inside a buffer
 
-/// One byte must stay one position: see syntax_tree.cpp.
-std::string as_ascii(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) >= 0x80) c = '?';
-  return text;
-}
-
 bool is_letter_type(std::size_t type) {
   switch (type) {
     case T::AXIS: case T::VECTOR: case T::RADIUS: case T::NORMAL_VECTOR: case T::PSET_AXIS: case T::CODE: case T::VAR: case T::LETTER: case T::LETTER_C:
@@ -45,7 +38,7 @@ struct WordReader::State {
   State(std::string_view source, const Names& known, bool in_buffer)
       : lead(in_buffer ? kOpensBuffer.size() : 0),
         text(std::string(kOpensBuffer.substr(0, lead)).append(source)),
-        input(as_ascii(text)),
+        input(lexer_input(text)),
         lexer(&input, text, names) {
     names.global = known;
   }
