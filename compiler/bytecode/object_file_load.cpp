@@ -1,6 +1,7 @@
 // Reads an object file into a module and refuses whatever is not exactly what save() writes for a safe module. Memory
 // stays in proportion to the bytes present: every vector and text of a chunk is counted against the size of the chunk,
 // since offsets of a hostile file may let many entries share the same bytes.
+#include <cstdint>
 #include <cstring>
 
 #include "compiler/bytecode/chunk.h"
@@ -62,6 +63,11 @@ class ChunkContents {
     spend(source->size());
     return source->str();
   }
+  /// FlatBuffers looks whether a vector begins where a number may, not whether its entries do.
+  template <class Vector>
+  static void require_aligned(const Vector& entries, std::size_t alignment) {
+    if (reinterpret_cast<std::uintptr_t>(entries.Data()) % alignment != 0) throw BadContents{"holds a table in a wrong place"};
+  }
   template <class Vector>
   std::size_t count(const Vector* entries) {
     if (entries == nullptr) return 0;
@@ -74,6 +80,7 @@ class ChunkContents {
     if (source == nullptr) return {};
     if (source->size() > kMaxRunWords) throw BadContents{"holds an oversized table"};
     spend(source->size() * sizeof(T));
+    require_aligned(*source, alignof(T));
     std::vector<T> result(source->size());
     for (flatbuffers::uoffset_t i = 0; i < source->size(); ++i) result[i] = source->Get(i);
     return result;
@@ -81,6 +88,7 @@ class ChunkContents {
   template <class Struct, class T>
   void append(const flatbuffers::Vector<const Struct*>* source, std::vector<T>& to) {
     const std::size_t entries = count(source);
+    if (entries > 0) require_aligned(*source, alignof(Struct));
     for (std::size_t i = 0; i < entries; ++i) to.push_back(unpack(*source->Get(static_cast<flatbuffers::uoffset_t>(i))));
   }
 
@@ -96,8 +104,9 @@ void ChunkContents::read_names(const file::Names& names) {
 }
 
 void ChunkContents::read_constants(const file::Constants& constants) {
-  count(constants.values());
-  if (constants.values()) for (const double value : *constants.values()) module_.constants.push_back(value);
+  if (count(constants.values()) == 0) return;
+  require_aligned(*constants.values(), alignof(double));
+  for (const double value : *constants.values()) module_.constants.push_back(value);
 }
 
 void ChunkContents::read_references(const file::References& references) {

@@ -93,7 +93,7 @@ bool InterpreterCore::reading_text_function(Function function, const double* x, 
   if (!read_text(x[0], left)) return false;
   const bool has_two_texts = bytecode::function_info(function).signature.starts_with("ss");
   if (has_two_texts && !read_text(x[1], right)) return false;
-  const char letter = has_two_texts ? '\0' : static_cast<char>(bytecode::integer_from(x[1]) & 0xff);
+  const auto letter = [x] { return static_cast<char>(bytecode::integer_from(x[1]) & 0xff); };   // of the functions that have one
   switch (function) {
     case Function::kStrcmp: result = sign_of_comparison(left, right); break;
     case Function::kStrncmp:
@@ -101,8 +101,8 @@ bool InterpreterCore::reading_text_function(Function function, const double* x, 
       result = sign_of_comparison(left.substr(0, count), right.substr(0, count));
       break;
     case Function::kStrlen: result = static_cast<double>(left.size()); break;
-    case Function::kStrchr: result = place_of((left + '\0').find(letter)); break;
-    case Function::kStrrchr: result = place_of((left + '\0').rfind(letter)); break;
+    case Function::kStrchr: result = place_of((left + '\0').find(letter())); break;
+    case Function::kStrrchr: result = place_of((left + '\0').rfind(letter())); break;
     case Function::kStrspn: result = static_cast<double>(std::min(left.find_first_not_of(right), left.size())); break;
     case Function::kStrcspn: result = static_cast<double>(std::min(left.find_first_of(right), left.size())); break;
     case Function::kStrpbrk: result = place_of(left.find_first_of(right)); break;

@@ -92,8 +92,7 @@ class TurboPass {
   }
 
   void respell(std::size_t i, const Spelling& row, std::size_t letters) {
-    const std::string_view number = std::string_view(tokens_.exact_text(i)).substr(letters);
-    std::string power = std::string(row.power) + std::string(number);
+    std::string power = std::string(row.power) + tokens_.exact_text(i).substr(letters);
     while (power.ends_with(' ')) power.pop_back();
     const source::Span span = tokens_.span(i);
     auto* error = tokens_.error("PM2024", span, fmt::format("{} is Turbo PMAC; write {}", tokens_.exact_text(i), power));

@@ -160,7 +160,9 @@ TEST_CASE("stream: a million blocks in bounded memory, all counted", "[acr1000]"
   CHECK(card.memory().move_counter() == kBlocks);
   CHECK(card.commanded_pulses() == 40'000'000);
   CHECK(outcome.time_s == Approx(1000));
+#ifndef __SANITIZE_ADDRESS__   // which keeps what is given back for a while
   CHECK(resident_kb() < before_kb + 4096);
+#endif
 }
 
 TEST_CASE("stream: random bytes never crash a card", "[acr1000]") {
