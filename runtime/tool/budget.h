@@ -1,4 +1,4 @@
-// What a run may use up: moves, memory and bytes of output. Simulated time and instructions are the machine's own limits. At each of
+// What a run may use up: moves, memory, bytes of output, and the disks that it writes to. Simulated time and instructions are the machine's own limits. At each of
 // them the run ends with exit code 4, and everything so far is written.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace pmac::tool {
 
 class Budget {
  public:
-  explicit Budget(const RunOptions& options) : options_(options) {}
+  explicit Budget(const RunOptions& options);
 
   void count_move() { ++moves_; }
   /// Bytes written so far by somebody who writes.
@@ -23,12 +23,16 @@ class Budget {
   const std::string& reached();
 
  private:
+  struct Disk { std::string folder, output; };
+
   std::string find();
+  std::string find_full_disk() const;
 
   const RunOptions& options_;
   std::uint64_t moves_ = 0;
   unsigned calls_ = 0;
   std::vector<std::function<std::uint64_t()>> outputs_;
+  std::vector<Disk> disks_;  // of the files that grow with the run, and of standard output where it is a file
   std::string reached_;
 };
 

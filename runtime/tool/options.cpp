@@ -90,6 +90,7 @@ std::optional<int> parse_options(int argc, char** argv, RunOptions& o) {
   app.add_option("--max-moves", o.max_moves, "give up after so many moves")->check(CLI::NonNegativeNumber)->capture_default_str();
   app.add_option("--max-memory", o.max_memory_mib, "give up at so much memory")->type_name("MIB")->check(CLI::Range(std::uint64_t{1}, kMaxMib))->capture_default_str();
   app.add_option("--max-output", o.max_output_mib, "give up after so much output")->type_name("MIB")->check(CLI::Range(std::uint64_t{0}, kMaxMib))->capture_default_str();
+  app.add_option("--min-free", o.min_free_mib, "give up when less is free on a disk that output goes to")->type_name("MIB")->check(CLI::Range(std::uint64_t{0}, kMaxMib))->capture_default_str();
   app.add_option("--record", o.record, "write every servo sample to a .csv, .npz or .txt file")->type_name("FILE");
   app.add_flag("--record-act", o.record_actual, "records hold where the motors are besides, Motor[n].ActPos");
   app.add_option("--gather", o.gather, "write what the program gathers to a .csv, .npz or .txt file")->type_name("FILE");

@@ -37,6 +37,7 @@ struct RunOptions {
   std::uint64_t max_moves = 1'000'000'000;
   std::uint64_t max_memory_mib = 8192;
   std::uint64_t max_output_mib = 262'144;                     // of all files and stage records together
+  std::uint64_t min_free_mib = 1024;                          // of the disks that grow fuller by the run
   std::string record, gather;
   std::string trace;                                          // a file, or - for standard output
   bool trace_instructions = false;

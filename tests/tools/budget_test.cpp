@@ -39,6 +39,7 @@ TEST_CASE("budgets: each limit ends the run with exit 4, and the record is whole
       {"--max-instructions 20000", "the limit of 20000 instructions is reached (--max-instructions)"},
       {"--max-moves 500", "the limit of 500 moves is reached (--max-moves)"},
       {"--max-output 1", "the limit of 1 MiB of output is reached (--max-output)"},
+      {"--min-free 1073741824", "less than 1073741824 MiB are free on the disk of r.csv (--min-free)"},
       {"--max-memory 1", "the limit of 1 MiB of memory is reached (--max-memory)"},
   };
   for (const Limit& limit : limits) {
@@ -61,6 +62,17 @@ TEST_CASE("budgets: the limit of moves is kept closely", "[tools]") {
   for (std::size_t at = r.out.find("\"mode\""); at != std::string::npos; at = r.out.find("\"mode\"", at + 1)) ++moves;
   CHECK(moves > 500);
   CHECK(moves < 1500);
+}
+
+TEST_CASE("budgets: a disk of which little is free ends a run that prints to a file, and none that prints to a pipe", "[tools]") {
+  const Workspace w;
+  w.write("endless.pmc", kEndless);
+  const std::string run = "endless.pmc -e '&1 b1r' --max-output 4 --min-free 1073741824 --emit=path";
+  const ToolResult to_file = w.run("pmac-run", run);   // the shell of this test has files
+  CHECK(to_file.code == 4);
+  CHECK(contains(to_file.err, "free on the disk of standard output (--min-free)"));
+  const ToolResult to_pipe = w.run("pmac-run", run + " | tail -n 1");
+  CHECK(contains(to_pipe.err, "the limit of 4 MiB of output is reached (--max-output)"));
 }
 
 TEST_CASE("budgets: printed stages count as output", "[tools]") {
@@ -89,7 +101,7 @@ TEST_CASE("budgets: depth of #include", "[tools]") {
 TEST_CASE("budgets: a limit that is no number is a usage error", "[tools]") {
   const Workspace w;
   w.write("a.pmc", "P1=1\n");
-  for (const char* bad : {"--max-moves x", "--max-moves -1", "--max-memory 0", "--max-output 9999999999999", "--max-include-depth 0", "--max-include-depth 1000", "--max-time -1"}) {
+  for (const char* bad : {"--max-moves x", "--max-moves -1", "--max-memory 0", "--min-free -1", "--max-output 9999999999999", "--max-include-depth 0", "--max-include-depth 1000", "--max-time -1"}) {
     INFO(bad);
     CHECK(w.run("pmac-run", std::string("a.pmc ") + bad).code == 2);
   }
