@@ -200,25 +200,27 @@ ToolResult ended_while_writing(const Workspace& w, const std::string& command, c
 TEST_CASE("whole outputs: pmacc and its formatter, ended while they write, leave the old file or the new one and nothing else", "[tools]") {
   const Workspace w;
   const std::string source = "P1  =1\n// " + std::string(10'000'000, '-') + "\n";   // takes long to write, and not to format
-  int ended = 0;
-  for (const char* signal : {"TERM", "INT", "HUP"}) {
-    INFO(signal);
-    w.write("long.pmc", source);
-    const ToolResult r = ended_while_writing(w, "pmacc fmt long.pmc", signal);
-    ended += r.code > 128;
-    CHECK((r.code == 0 || r.code > 128));
-    CHECK((w.read("long.pmc") == source) == (r.code != 0));
-    CHECK_FALSE(leaves_other_files(w));
-  }
   std::string moves = "open prog 1\nlinear abs F10\n";
   for (int i = 0; i < 400'000; ++i) moves += "X1 Y2\n";
   w.write("moves.pmc", moves + "close\n");
-  w.write("o.pmx", "older");
-  const ToolResult r = ended_while_writing(w, "pmacc moves.pmc -o o.pmx", "TERM");
-  ended += r.code > 128;
-  CHECK((w.read("o.pmx") == "older") == (r.code != 0));
-  CHECK_FALSE(leaves_other_files(w));
-  CHECK(ended > 0);   // at least one of the four was caught
+  int ended = 0;
+  for (int attempt = 0; attempt < 10 && ended == 0; ++attempt) {   // a fast machine may be over before the signal comes
+    for (const char* signal : {"TERM", "INT", "HUP"}) {
+      INFO(signal);
+      w.write("long.pmc", source);
+      const ToolResult r = ended_while_writing(w, "pmacc fmt long.pmc", signal);
+      ended += r.code > 128;
+      CHECK((r.code == 0 || r.code > 128));
+      CHECK((w.read("long.pmc") == source) == (r.code != 0));
+      CHECK_FALSE(leaves_other_files(w));
+    }
+    w.write("o.pmx", "older");
+    const ToolResult r = ended_while_writing(w, "pmacc moves.pmc -o o.pmx", "TERM");
+    ended += r.code > 128;
+    CHECK((w.read("o.pmx") == "older") == (r.code != 0));
+    CHECK_FALSE(leaves_other_files(w));
+  }
+  CHECK(ended > 0);
 }
 
 TEST_CASE("whole outputs: the formatter, ended between two files, has written the first one whole", "[tools]") {
