@@ -90,7 +90,7 @@ void compile_rows(const Folders& f) {
 double contour_rate(const Folders& f, const std::string& name, double simulated_s, double* peak_mib = nullptr) {
   const Usage used = best_of(kRuns, fmt::format("{0}/pmac-run {1}/{2}.cfg {1}/{2}.pmc -e '&1 b2r' --until {3} -q", f.bin.string(), f.scratch.string(), name, simulated_s));
   if (peak_mib) *peak_mib = used.peak_mib;
-  return simulated_s / used.cpu_s;
+  return used.ran ? simulated_s / used.cpu_s : std::nan("");
 }
 
 void contour_rows(const Folders& f) {

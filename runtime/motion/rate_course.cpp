@@ -2,6 +2,7 @@
 // nearby, or at the highest x that is asked for, and takes the bound that is exceeded most into the three that decide, until none is exceeded.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "runtime/motion/rate_limits.h"
 
@@ -14,7 +15,8 @@ constexpr double kPlanned = 1 - 4e-7, kCarriedOut = 1;
 constexpr double kMostBend = 0.75;
 /// By so much a bound may be exceeded: rounding.
 constexpr double kRounding = 1e-11;
-constexpr int kMostSteps = 200, kMostMotors = 32;
+constexpr int kMostSteps = 200;
+constexpr std::size_t kMostMotors = 64;   // more than a controller or a cable of cards has
 
 enum Axis { kX0, kX1, kBend };
 
@@ -33,6 +35,7 @@ class CourseBounds {
  public:
   CourseBounds(const RateLimits& limits, double full, double x0_max, double x1_max)
       : full_(full), x0_max_(x0_max), x1_max_(x1_max), middle_(limits.max_start_rate2 + limits.max_end_rate2) {
+    if (limits.motors.size() > kMostMotors) throw std::length_error("a path of more motors than the lookahead can plan");
     for (const MotorShare& motor : limits.motors) add_motor(motor);
   }
 
